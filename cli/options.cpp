@@ -1,0 +1,58 @@
+#include "cli/options.h"
+
+#include <charconv>
+#include <sstream>
+
+#include "support/errors.h"
+
+namespace clothbrdf {
+
+Effects parse_effects(const std::string& list) {
+  Effects effects{.specular = false, .internal = false, .diffuse = false};
+  std::string known;
+  for (const EffectName& effect : kEffectNames)
+    known += (known.empty() ? "" : ", ") + std::string(effect.name);
+  std::istringstream names(list);
+  bool any = false;
+  for (std::string name; std::getline(names, name, ',');) {
+    bool found = false;
+    for (const EffectName& effect : kEffectNames) {
+      if (effect.name == name) {
+        effects.*effect.member = true;
+        any = found = true;
+      }
+    }
+    if (!found)
+      throw InputError("--effects: '" + name + "' is not an effect; allowed: " + known +
+                       ", joined by ','");
+  }
+  if (!any) throw InputError("--effects: names none; allowed: " + known + ", joined by ','");
+  return effects;
+}
+
+CellRule parse_cells(const std::string& text) {
+  if (text == "point") return {};
+  CellRule rule{.average = true};
+  if (text == "average") return rule;
+  const std::string prefix = "average:";
+  const char* end = text.data() + text.size();
+  if (text.starts_with(prefix)) {
+    const auto [next, error] = std::from_chars(text.data() + prefix.size(), end, rule.tolerance);
+    if (error == std::errc() && next == end && rule.tolerance >= kTightestAverage &&
+        rule.tolerance <= 1)
+      return rule;
+  }
+  throw InputError(
+      "--cells: '" + text +
+      "' is not allowed: point, average or average:REL, REL the relative tolerance from 1e-9 to 1");
+}
+
+std::string effects_text(const Effects& effects) {
+  std::string text;
+  for (const EffectName& effect : kEffectNames) {
+    if (effects.*effect.member) text += (text.empty() ? "" : ", ") + std::string(effect.name);
+  }
+  return text;
+}
+
+}  // namespace clothbrdf

@@ -1,0 +1,180 @@
+#include <chrono>
+#include <iomanip>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "cli/commands.h"
+#include "cli/options.h"
+#include "formats/format.h"
+#include "formats/material_json.h"
+#include "support/errors.h"
+#include "tabulate/model_producer.h"
+
+namespace clothbrdf {
+namespace {
+
+struct TabulateOptions {
+  std::string material;
+  std::vector<std::string> outputs;
+  std::string grid;
+  std::string cells = "point";
+  std::string effects;
+  int threads = 0;
+  bool half = false;
+  bool compress = false;
+  bool components = false;
+  bool dry_run = false;
+  bool json = false;
+};
+
+struct Output {
+  std::filesystem::path path;
+  const Format* format;
+  TableSpec spec;
+  std::string note;  // what this file cannot hold of the material
+};
+
+std::string what_is_lost(const Material& material, const Grid& grid) {
+  std::string note;
+  if (grid.kind == GridKind::kHalfDifference3d) note = "isotropic: the mean over phi_h";
+  const bool folded = grid.kind != GridKind::kInOut && grid.axes.back().highest_deg <= 180;
+  if (material.reflectance == Reflectance::kPaper && folded) {
+    note += (note.empty() ? "" : "; ") +
+            std::string("not reciprocal: the mean of both orders of the directions");
+  }
+  return note;
+}
+
+Output plan_output(const TabulateOptions& options, const Material& material,
+                   const std::string& name) {
+  const Format& format = format_for(name);
+  Grid grid = format.default_grid(material.reflectance);
+  if (!options.grid.empty()) {
+    const Grid wanted = parse_grid(options.grid, grid.axes.back().highest_deg);
+    if (format.fixed_grid && wanted != grid) {
+      throw InputError("--grid: '" + options.grid + "' is not allowed for " + name + ": " +
+                       std::string(format.name) + " holds " + grid.description() + " only");
+    }
+    grid = wanted;
+  }
+  const auto refuse = [&](bool given, const char* option) {
+    if (given) {
+      throw InputError(std::string(option) + " is not allowed for " + name + ": " +
+                       std::string(format.name) + " has no such choice");
+    }
+  };
+  refuse(options.components && !format.has_components, "--components");
+  refuse(options.half && !format.has_options, "--half");
+  refuse(options.compress && !format.has_options, "--compress");
+  const Effects effects = options.effects.empty() ? Effects{} : parse_effects(options.effects);
+  TableSpec spec =
+      material_spec(material, effects, grid, parse_cells(options.cells), options.components);
+  return {name, &format, std::move(spec), what_is_lost(material, grid)};
+}
+
+std::string with_commas(std::uint64_t number) {
+  std::string digits = std::to_string(number);
+  for (std::size_t at = digits.size(); at > 3;) digits.insert(at -= 3, ",");
+  return digits;
+}
+
+void report(const TabulateOptions& options, const Output& output, std::uint64_t bytes,
+            double seconds) {
+  const Grid& grid = output.spec.grid();
+  if (options.json) {
+    nlohmann::ordered_json line = {{"file", output.path.string()},
+                                   {"format", output.format->name},
+                                   {"grid", grid.description()},
+                                   {"cells", grid.cell_count()},
+                                   {"channels", output.spec.channels.size()}};
+    if (!options.dry_run) line.update({{"bytes", bytes}, {"seconds", seconds}});
+    if (!output.note.empty()) line["note"] = output.note;
+    std::cout << line.dump() << '\n';
+    return;
+  }
+  std::ostringstream text;
+  text << output.path.string() << ": " << output.format->name << ' ' << grid.description() << ", "
+       << with_commas(grid.cell_count()) << " cells of " << output.spec.channels.size()
+       << " channels";
+  if (options.dry_run) {
+    text << ", not written (dry run)";
+  } else {
+    text << ", " << with_commas(bytes) << " bytes in " << std::setprecision(3) << seconds << " s";
+  }
+  if (!output.note.empty()) text << " (" << output.note << ')';
+  std::cout << text.str() << '\n';
+}
+
+void tabulate(const TabulateOptions& options) {
+  const Material material = read_material(options.material);
+  const int threads = options.threads > 0 ? options.threads : default_threads();
+  std::vector<Output> outputs;
+  for (const std::string& name : options.outputs)
+    outputs.push_back(plan_output(options, material, name));
+
+  std::vector<AtomicFile>
+      files;  // all opened before any work, so that a wrong folder costs nothing
+  if (!options.dry_run) {
+    for (const Output& output : outputs) files.emplace_back(output.path);
+  }
+  for (std::size_t k = 0; k < outputs.size(); ++k) {
+    const auto start = std::chrono::steady_clock::now();
+    std::uint64_t bytes = 0;
+    if (!options.dry_run) {
+      const std::unique_ptr<Producer> producer = make_producer(outputs[k].spec, threads);
+      outputs[k].format->write(*producer, files[k], {options.half, options.compress, threads});
+      bytes = files[k].size();
+      files[k].commit();
+    }
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+    report(options, outputs[k], bytes, elapsed.count());
+  }
+}
+
+}  // namespace
+
+void add_tabulate_command(CLI::App& program) {
+  const auto options = std::make_shared<TabulateOptions>();
+  CLI::App* command = program.add_subcommand(
+      "tabulate",
+      "Writes the cloth's f_r as tables that other programs read; the format follows the file's "
+      "ending.\n"
+      "Example: clothbrdf tabulate materials/silk.json -o silk.binary -o silk.exr");
+  std::string known;
+  for (const Format& f : formats())
+    known += (known.empty() ? "" : "; ") + std::string(f.ending) + ": " + std::string(f.summary);
+  command->add_option("MATERIAL", options->material, "material file (JSON)")->required();
+  command->add_option("-o,--output", options->outputs, "table to write, repeatable (" + known + ")")
+      ->required()
+      ->expected(1)
+      ->take_all();
+  command->add_option("--grid", options->grid,
+                      "halfdiff3d[:THxTDxPD], halfdiff4d[:THxPHxTDxPD] or inout[:TIxPIxTOxPO]; "
+                      "each format has its own "
+                      "default");
+  command->add_option("--cells", options->cells,
+                      "value of a cell: point (f_r at its node, the default) or average[:REL] "
+                      "(mean over the cell above "
+                      "the horizon, to the relative tolerance REL, 1e-3 where left out)");
+  command->add_option("--effects", options->effects,
+                      "only these components, joined by ',': specular, internal, diffuse");
+  command->add_flag("--components", options->components,
+                    "also layers specular.*, internal.*, diffuse.* (EXR)");
+  command->add_flag("--half", options->half,
+                    "16-bit floats (EXR); a value that does not fit is an error");
+  command->add_flag("--compress", options->compress, "compress without loss (EXR)");
+  command
+      ->add_option("--threads", options->threads,
+                   "threads, 1 to 1024; all processors where left out")
+      ->check(CLI::Range(1, 1024));
+  command->add_flag("--dry-run", options->dry_run,
+                    "check everything, say what would be written, write nothing");
+  command->add_flag("--json", options->json, "say what was written as one JSON object a line");
+  command->callback([options] { tabulate(*options); });
+}
+
+}  // namespace clothbrdf

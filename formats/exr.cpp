@@ -1,0 +1,236 @@
+#include "formats/exr.h"
+
+#include <Iex.h>
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfIO.h>
+#include <ImfInputFile.h>
+#include <ImfOutputFile.h>
+#include <ImfStringAttribute.h>
+#include <half.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "formats/table_metadata.h"
+#include "support/errors.h"
+
+namespace clothbrdf {
+namespace {
+
+constexpr const char* kAttribute = "clothbrdf";
+
+// OpenEXR's own writer, into our file.
+class AtomicOStream final : public Imf::OStream {
+ public:
+  explicit AtomicOStream(AtomicFile& file) : Imf::OStream(file.name().c_str()), file_(file) {}
+  void write(const char bytes[], int count) override {
+    file_.write_at(position_, std::as_bytes(std::span(bytes, static_cast<std::size_t>(count))));
+    position_ += static_cast<std::uint64_t>(count);
+  }
+  std::uint64_t tellp() override { return position_; }
+  void seekp(std::uint64_t position) override { position_ = position; }
+
+ private:
+  AtomicFile& file_;
+  std::uint64_t position_ = 0;
+};
+
+struct PictureSize {
+  std::size_t width;
+  std::size_t height;
+  std::size_t lines_per_row;  // scan lines of one row of the table
+};
+
+PictureSize picture_size(const TableSpec& spec) {
+  const Grid& grid = spec.grid();
+  const std::size_t width = grid.kind == GridKind::kHalfDifference3d
+                                ? static_cast<std::size_t>(grid.axes.back().size)
+                                : grid.column_count();
+  const std::size_t lines = grid.column_count() / width;
+  return {width, grid.row_count() * lines, lines};
+}
+
+// Stored samples of one row of the table, in the type of the file.
+template <class Sample>
+class RowBuffer {
+ public:
+  RowBuffer(const TableSpec& spec, const PictureSize& size, Imf::PixelType type)
+      : spec_(spec), size_(size), type_(type), samples_(spec.row_values()) {}
+
+  std::vector<Sample>& samples() { return samples_; }
+
+  // OpenEXR addresses sample (x, y) as base + x * xStride + y * yStride.
+  Imf::FrameBuffer frame(std::size_t first_line) {
+    Imf::FrameBuffer frame;
+    const std::size_t line_bytes = size_.width * sizeof(Sample);
+    for (std::size_t c = 0; c < spec_.channels.size(); ++c) {
+      char* base = reinterpret_cast<char*>(samples_.data() + c * spec_.column_count());
+      frame.insert(full_name(spec_.channels[c]),
+                   Imf::Slice(type_, base - first_line * line_bytes, sizeof(Sample), line_bytes));
+    }
+    return frame;
+  }
+
+ private:
+  const TableSpec& spec_;
+  PictureSize size_;
+  Imf::PixelType type_;
+  std::vector<Sample> samples_;
+};
+
+[[noreturn]] void refuse_value(const TableSpec& spec, const std::string& name, std::size_t row,
+                               std::size_t at, double value, double largest) {
+  const Grid& grid = spec.grid();
+  const std::size_t cell = row * spec.column_count() + at % spec.column_count();
+  const std::array<int, 4> index = grid.indices(cell);
+  std::string where;
+  for (std::size_t a = 0; a < grid.axes.size(); ++a) {
+    where += " " + grid.axes[a].name + " " + std::to_string(grid.axes[a].node_deg(index[a]));
+  }
+  throw WorkError(name + ": " + full_name(spec.channels[at / spec.column_count()]) + " is " +
+                  std::to_string(value) + " at" + where + ", beyond the largest stored value " +
+                  std::to_string(largest) +
+                  (largest < 1e5 ? "; leave out --half to store 32-bit floats" : ""));
+}
+
+template <class Sample>
+void write_lines(const Producer& producer, Imf::OutputFile& out, Imf::PixelType type,
+                 const std::string& name, int threads) {
+  const TableSpec& spec = producer.spec();
+  const PictureSize size = picture_size(spec);
+  const double largest =
+      type == Imf::HALF ? double{HALF_MAX} : double{std::numeric_limits<float>::max()};
+  RowBuffer<Sample> buffer(spec, size, type);
+  stream_rows(producer, threads, [&](std::size_t row, std::span<double> values) {
+    for (; !values.empty(); ++row, values = values.subspan(spec.row_values())) {
+      for (std::size_t i = 0; i < spec.row_values(); ++i) {
+        if (std::abs(values[i]) > largest) refuse_value(spec, name, row, i, values[i], largest);
+        buffer.samples()[i] = Sample(static_cast<float>(values[i]));
+      }
+      out.setFrameBuffer(buffer.frame(row * size.lines_per_row));
+      out.writePixels(static_cast<int>(size.lines_per_row));
+    }
+  });
+}
+
+Grid exr_grid(Reflectance reflectance) {
+  return parse_grid("halfdiff4d", reflectance == Reflectance::kPaper ? 360 : 180);
+}
+
+void write_exr(const Producer& producer, AtomicFile& file, const WriteOptions& options) {
+  const TableSpec& spec = producer.spec();
+  const std::string name = file.name().string();
+  if (!spec.has_grid()) throw InputError(name + ": EXR holds grids, not lists of pairs");
+  const PictureSize size = picture_size(spec);
+  // OpenEXR counts pixels in 32-bit integers.
+  constexpr std::size_t kMostPixels = std::numeric_limits<int>::max() / 2;
+  if (size.width > kMostPixels || size.height > kMostPixels) {
+    throw InputError(name + ": " + spec.grid().description() + " makes a picture of " +
+                     std::to_string(size.width) + " x " + std::to_string(size.height) +
+                     " pixels; EXR holds at most " + std::to_string(kMostPixels) + " each way");
+  }
+  try {
+    Imf::Header header(static_cast<int>(size.width), static_cast<int>(size.height));
+    header.compression() = options.compress ? Imf::ZIP_COMPRESSION : Imf::NO_COMPRESSION;
+    header.insert(kAttribute, Imf::StringAttribute(table_metadata(spec)));
+    const Imf::PixelType type = options.half ? Imf::HALF : Imf::FLOAT;
+    for (const Channel& channel : spec.channels)
+      header.channels().insert(full_name(channel), Imf::Channel(type));
+    AtomicOStream stream(file);
+    Imf::OutputFile out(stream, header);
+    if (options.half) {
+      write_lines<half>(producer, out, type, name, options.threads);
+    } else {
+      write_lines<float>(producer, out, type, name, options.threads);
+    }
+  } catch (const Iex::BaseExc& error) {
+    throw WorkError(name + ": cannot write: " + error.what());
+  }
+}
+
+// The spec of a file, once its header agrees with its description.
+TableSpec read_spec(const Imf::InputFile& in, const std::string& name) {
+  const Imf::Header& header = in.header();
+  const auto* attribute = header.findTypedAttribute<Imf::StringAttribute>(kAttribute);
+  if (attribute == nullptr) {
+    throw InputError(name + ": no attribute '" + kAttribute +
+                     "': this EXR picture is not a table of this program");
+  }
+  TableSpec spec = parse_table_metadata(attribute->value(), name + ": attribute 'clothbrdf'");
+  const PictureSize size = picture_size(spec);
+  const Imath::Box2i window = header.dataWindow();
+  if (window.min != Imath::V2i(0, 0) || static_cast<std::size_t>(window.max.x) + 1 != size.width ||
+      static_cast<std::size_t>(window.max.y) + 1 != size.height) {
+    throw InputError(name + ": the picture is not of the size of its grid " +
+                     spec.grid().description());
+  }
+  std::size_t found = 0;
+  for (auto c = header.channels().begin(); c != header.channels().end(); ++c) {
+    if (c.channel().xSampling != 1 || c.channel().ySampling != 1) {
+      throw InputError(name + ": channel " + c.name() + " is subsampled");
+    }
+    ++found;
+  }
+  for (const Channel& channel : spec.channels) {
+    if (header.channels().findChannel(full_name(channel)) == nullptr) {
+      throw InputError(name + ": channel " + full_name(channel) + " is missing");
+    }
+  }
+  if (found != spec.channels.size()) {
+    throw InputError(name + ": " + std::to_string(found) + " channels; its description names " +
+                     std::to_string(spec.channels.size()));
+  }
+  if (!in.isComplete()) throw InputError(name + ": the file is cut off");
+  return spec;
+}
+
+Table read_exr(const std::filesystem::path& path) {
+  const std::string name = path.string();
+  if (!std::filesystem::is_regular_file(path)) throw InputError(name + ": cannot read this file");
+  try {
+    Imf::InputFile in(path.c_str());
+    TableSpec spec = read_spec(in, name);
+    const PictureSize size = picture_size(spec);
+    // Compression may shrink zeros a thousandfold, not more: a header cannot ask for memory that no
+    // file backs.
+    const double bytes = static_cast<double>(std::filesystem::file_size(path));
+    const double cells =
+        static_cast<double>(spec.cell_count()) * static_cast<double>(spec.channels.size());
+    if (cells > 1100 * bytes) throw InputError(name + ": the file is too short for its grid");
+    std::vector<double> values(spec.cell_count() * spec.channels.size());
+    RowBuffer<float> buffer(spec, size, Imf::FLOAT);
+    for (std::size_t row = 0; row < spec.row_count(); ++row) {
+      const auto line = static_cast<int>(row * size.lines_per_row);
+      in.setFrameBuffer(buffer.frame(row * size.lines_per_row));
+      in.readPixels(line, line + static_cast<int>(size.lines_per_row) - 1);
+      std::copy(buffer.samples().begin(), buffer.samples().end(),
+                values.begin() + static_cast<std::ptrdiff_t>(row * spec.row_values()));
+    }
+    std::vector<std::uint8_t> valid = cells_above_horizon(spec);
+    return {std::move(spec), std::move(values), std::move(valid)};
+  } catch (const Iex::BaseExc& error) {
+    throw InputError(name + ": cannot read: " + error.what());
+  }
+}
+
+}  // namespace
+
+Format exr_format() {
+  return {.name = "EXR",
+          .ending = ".exr",
+          .summary = "any grid as a picture of floats, with a description that rebuilds the table",
+          .default_grid = exr_grid,
+          .fixed_grid = false,
+          .has_components = true,
+          .has_options = true,
+          .write = write_exr,
+          .read = read_exr};
+}
+
+}  // namespace clothbrdf

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string_view>
+
+#include "support/atomic_file.h"
+#include "table/producer.h"
+#include "table/table.h"
+
+namespace clothbrdf {
+
+/// How to write a table. Formats that have no such choice refuse it.
+struct WriteOptions {
+  bool half = false;      ///< 16-bit floats; a value that does not fit is an error
+  bool compress = false;  ///< without loss
+  int threads = 1;
+};
+
+/// One table format. Everything that lists, chooses or describes formats goes by formats().
+struct Format {
+  std::string_view name;
+  std::string_view ending;   ///< of file names, with the dot
+  std::string_view summary;  ///< one line for people
+  Grid (*default_grid)(Reflectance reflectance);
+  bool fixed_grid;      ///< holds no grid but its default one
+  bool has_components;  ///< can hold the three components beside their total
+  bool has_options;     ///< half and compress
+
+  /// Writes all of a table into the file; the caller commits. Throws InputError where the format
+  /// cannot hold the table, WorkError where writing fails.
+  void (*write)(const Producer& producer, AtomicFile& file, const WriteOptions& options);
+
+  /// Reads a whole file. Throws InputError, in one line that starts with the file's name. Cells
+  /// that are not numbers are accepted.
+  Table (*read)(const std::filesystem::path& path);
+};
+
+std::span<const Format> formats();
+
+/// The format that a file's ending stands for; null for an unknown ending.
+const Format* find_format(const std::filesystem::path& path);
+
+/// The same; throws InputError that lists the known endings.
+const Format& format_for(const std::filesystem::path& path);
+
+}  // namespace clothbrdf

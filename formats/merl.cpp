@@ -1,0 +1,116 @@
+#include "formats/merl.h"
+
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "support/errors.h"
+
+namespace clothbrdf {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "the file is little-endian");
+
+constexpr std::array<std::int32_t, 3> kSizes = {90, 90, 180};
+constexpr std::uint64_t kHeaderBytes = sizeof kSizes;
+constexpr std::uint64_t kCells = 90ULL * 90 * 180;
+constexpr std::uint64_t kFileBytes = kHeaderBytes + 3 * kCells * sizeof(double);
+
+// Stored value = f_r * kStored.
+constexpr std::array<double, 3> kStored = {1500.0, 1500.0 / 1.15, 1500.0 / 1.66};
+
+const std::vector<Channel>& rgb_channels() {
+  static const std::vector<Channel> kChannels = {
+      {"R", Part::kTotal, 0}, {"G", Part::kTotal, 1}, {"B", Part::kTotal, 2}};
+  return kChannels;
+}
+
+Grid merl_grid(Reflectance /*both are folded to 180 degrees*/) { return halfdiff3d(); }
+
+void write_merl(const Producer& producer, AtomicFile& file, const WriteOptions& options) {
+  const TableSpec& spec = producer.spec();
+  const std::string name = file.name().string();
+  if (!spec.has_grid() || spec.grid() != halfdiff3d()) {
+    throw InputError(name + ": MERL holds the grid " + halfdiff3d().description() + " only" +
+                     (spec.has_grid() ? ", not " + spec.grid().description() : ""));
+  }
+  if (spec.channels != rgb_channels()) {
+    throw InputError(name + ": MERL holds R, G and B only; this table has " +
+                     std::to_string(spec.channels.size()) + " channels, the first named " +
+                     full_name(spec.channels.front()));
+  }
+  if (options.half || options.compress)
+    throw InputError(name + ": MERL has no half or compressed flavour");
+
+  file.write_at(0, std::as_bytes(std::span(kSizes)));
+  const std::size_t columns = spec.column_count();
+  stream_rows(producer, options.threads, [&](std::size_t row, std::span<double> values) {
+    for (; !values.empty(); ++row, values = values.subspan(spec.row_values())) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        const std::span<double> plane = values.subspan(c * columns, columns);
+        for (double& value : plane) value *= kStored[c];
+        file.write_at(kHeaderBytes + (c * kCells + row * columns) * sizeof(double),
+                      std::as_bytes(plane));
+      }
+    }
+  });
+}
+
+Table read_merl(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary | std::ios::ate);
+  if (!in || std::filesystem::is_directory(path))
+    throw InputError(path.string() + ": cannot read this file");
+  const auto bytes = static_cast<std::uint64_t>(in.tellg());
+  if (bytes < kHeaderBytes) {
+    throw InputError(path.string() + ": " + std::to_string(bytes) +
+                     " bytes are too few for a MERL header");
+  }
+  std::array<std::int32_t, 3> sizes{};
+  in.seekg(0);
+  in.read(reinterpret_cast<char*>(sizes.data()), sizeof sizes);
+  if (sizes != kSizes) {
+    throw InputError(path.string() + ": header says " + std::to_string(sizes[0]) + " x " +
+                     std::to_string(sizes[1]) + " x " + std::to_string(sizes[2]) +
+                     " cells; a MERL file has 90 x 90 x 180");
+  }
+  if (bytes != kFileBytes) {
+    throw InputError(path.string() + ": " + std::to_string(bytes) + " bytes; a MERL file has " +
+                     std::to_string(kFileBytes));
+  }
+  TableSpec spec{halfdiff3d(), rgb_channels(), {}, {}};
+  std::vector<double> values(3 * kCells);
+  std::vector<std::uint8_t> valid(kCells, 1);
+  std::vector<double> plane(kCells);
+  const std::size_t columns = spec.column_count();
+  for (std::size_t c = 0; c < 3; ++c) {
+    in.read(reinterpret_cast<char*>(plane.data()),
+            static_cast<std::streamsize>(kCells * sizeof(double)));
+    if (!in) throw InputError(path.string() + ": cannot read channel " + rgb_channels()[c].name);
+    for (std::size_t cell = 0; cell < kCells; ++cell) {
+      values[(cell / columns * 3 + c) * columns + cell % columns] = plane[cell] / kStored[c];
+      if (plane[cell] < 0) valid[cell] = 0;  // MERL's mark of a cell that was not measured
+    }
+  }
+  return {std::move(spec), std::move(values), std::move(valid)};
+}
+
+}  // namespace
+
+Format merl_format() {
+  return {.name = "MERL",
+          .ending = ".binary",
+          .summary = "isotropic 90x90x180 table of doubles; the mean over phi_h",
+          .default_grid = merl_grid,
+          .fixed_grid = true,
+          .has_components = false,
+          .has_options = false,
+          .write = write_merl,
+          .read = read_merl};
+}
+
+}  // namespace clothbrdf

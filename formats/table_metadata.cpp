@@ -1,0 +1,131 @@
+#include "formats/table_metadata.h"
+
+#include <algorithm>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "formats/json_text.h"
+#include "formats/material_json.h"
+#include "formats/schema_check.h"
+#include "support/errors.h"
+
+namespace clothbrdf {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kValue = "f_r, 1/sr, without the cosine";
+
+template <class T>
+struct Name {
+  T value;
+  const char* name;
+};
+constexpr Name<Spacing> kSpacings[] = {
+    {Spacing::kUniform, "uniform"}, {Spacing::kSquared, "squared"}, {Spacing::kNodes, "nodes"}};
+constexpr Name<GridKind> kKinds[] = {{GridKind::kHalfDifference3d, "halfdiff3d"},
+                                     {GridKind::kHalfDifference4d, "halfdiff4d"},
+                                     {GridKind::kInOut, "inout"}};
+constexpr Name<Part> kParts[] = {{Part::kTotal, "total"},
+                                 {Part::kSpecular, "specular"},
+                                 {Part::kInternal, "internal"},
+                                 {Part::kDiffuse, "diffuse"}};
+
+template <class T, std::size_t N>
+const char* name_of(const Name<T> (&names)[N], T value) {
+  return std::find_if(std::begin(names), std::end(names),
+                      [&](const Name<T>& n) { return n.value == value; })
+      ->name;
+}
+
+// The schema has refused all other names.
+template <class T, std::size_t N>
+T value_of(const Name<T> (&names)[N], const std::string& name) {
+  return std::find_if(std::begin(names), std::end(names),
+                      [&](const Name<T>& n) { return n.name == name; })
+      ->value;
+}
+
+Json axis_json(const Axis& axis) {
+  return {{"name", axis.name},
+          {"unit", "deg"},
+          {"spacing", name_of(kSpacings, axis.spacing)},
+          {"size", axis.size},
+          {"from", axis.lowest_deg},
+          {"to", axis.highest_deg},
+          {"periodic", axis.periodic}};
+}
+
+Axis parse_axis(const nlohmann::json& json) {
+  return {json["name"].get<std::string>(), value_of(kSpacings, json["spacing"].get<std::string>()),
+          json["size"].get<int>(),         json["from"].get<double>(),
+          json["to"].get<double>(),        json["periodic"].get<bool>()};
+}
+
+// A grid must be one that this program can make, whatever its sizes.
+Grid parse_grid_json(const nlohmann::json& json, const std::string& name) {
+  Grid grid{value_of(kKinds, json["kind"].get<std::string>()), {}};
+  double cells = 1;
+  for (const nlohmann::json& axis : json["axes"]) {
+    grid.axes.push_back(parse_axis(axis));
+    cells *= grid.axes.back().size;
+  }
+  if (cells <= kMaxCells &&
+      grid.axes.size() == (grid.kind == GridKind::kHalfDifference3d ? 3U : 4U)) {
+    if (grid == parse_grid(grid.description(), grid.axes.back().highest_deg)) return grid;
+  }
+  throw InputError(name + ": /grid/axes: not the axes of a " + json["kind"].get<std::string>() +
+                   " grid");
+}
+
+}  // namespace
+
+std::string table_metadata(const TableSpec& spec) {
+  const Provenance& from = spec.provenance;
+  Json json = {{"version", 1}, {"program", from.program}, {"value", kValue}};
+  if (from.material) {
+    json["convention"] =
+        from.material->reflectance == Reflectance::kMicrofacet ? "microfacet" : "paper";
+  }
+  json["grid"] = {{"kind", name_of(kKinds, spec.grid().kind)}, {"axes", Json::array()}};
+  for (const Axis& axis : spec.grid().axes) json["grid"]["axes"].push_back(axis_json(axis));
+  json["channels"] = Json::array();
+  for (const Channel& c : spec.channels) {
+    json["channels"].push_back(
+        {{"name", c.name}, {"part", name_of(kParts, c.part)}, {"colour", c.colour}});
+  }
+  json["cells"] = {{"rule", spec.cells.average ? "average" : "point"}};
+  if (spec.cells.average) json["cells"]["tolerance"] = spec.cells.tolerance;
+  json["effects"] = Json::array();
+  for (const EffectName& effect : kEffectNames) {
+    if (from.effects.*effect.member) json["effects"].push_back(effect.name);
+  }
+  if (from.material) json["material"] = Json::parse(material_to_json(*from.material));
+  return json.dump();
+}
+
+TableSpec parse_table_metadata(std::string_view text, const std::string& name) {
+  const nlohmann::json json = parse_json(text, name);
+  check_against_schema(json, "table.schema.json", name);
+  TableSpec spec;
+  spec.samples = parse_grid_json(json["grid"], name);
+  for (const nlohmann::json& c : json["channels"]) {
+    spec.channels.push_back({c["name"].get<std::string>(),
+                             value_of(kParts, c["part"].get<std::string>()),
+                             c["colour"].get<std::size_t>()});
+  }
+  spec.cells.average = json["cells"]["rule"] == "average";
+  spec.cells.tolerance = json["cells"].value("tolerance", spec.cells.tolerance);
+  for (const EffectName& effect : kEffectNames) {
+    spec.provenance.effects.*effect.member =
+        std::find(json["effects"].begin(), json["effects"].end(), effect.name) !=
+        json["effects"].end();
+  }
+  spec.provenance.program = json["program"].get<std::string>();
+  if (json.contains("material"))
+    spec.provenance.material = parse_material(json["material"].dump(), name + ": /material");
+  return spec;
+}
+
+}  // namespace clothbrdf

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "table/table_spec.h"
+
+namespace clothbrdf {
+
+/// All that a grid's table says of itself, as one line of JSON (data-schemas/table.schema.json).
+std::string table_metadata(const TableSpec& spec);
+
+/// The spec again. Throws InputError, in one line that starts with `name`, the file's name.
+TableSpec parse_table_metadata(std::string_view text, const std::string& name);
+
+}  // namespace clothbrdf

@@ -1,0 +1,122 @@
+#include "support/atomic_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <string>
+#include <utility>
+
+#include "support/errors.h"
+
+namespace clothbrdf {
+namespace {
+
+constexpr mode_t kMode = 0666;  // less the user's umask
+
+std::filesystem::path folder_of(const std::filesystem::path& file) {
+  return file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+}
+
+std::filesystem::path hidden_name(const std::filesystem::path& target, int attempt) {
+  return folder_of(target) / ("." + target.filename().string() + "." + std::to_string(::getpid()) +
+                              "." + std::to_string(attempt) + ".part");
+}
+
+}  // namespace
+
+AtomicFile::AtomicFile(const std::filesystem::path& target) : name_(target), target_(target) {
+  std::error_code error;
+  if (std::filesystem::is_symlink(target, error)) {
+    target_ = std::filesystem::weakly_canonical(target, error);
+    if (error) fail("cannot follow the link", error.value());
+  }
+  struct stat status {};
+  if (::stat(target_.c_str(), &status) == 0) {
+    if (S_ISDIR(status.st_mode)) fail("cannot write", EISDIR);
+    if (!S_ISREG(status.st_mode))
+      throw WorkError(name_.string() + ": cannot write: not a regular file");
+  }
+  open_anonymous();
+  if (fd_ < 0) open_hidden();
+}
+
+AtomicFile::AtomicFile(AtomicFile&& other) noexcept
+    : name_(std::move(other.name_)),
+      target_(std::move(other.target_)),
+      hidden_(std::exchange(other.hidden_, {})),
+      size_(other.size_),
+      fd_(std::exchange(other.fd_, -1)) {}
+
+AtomicFile::~AtomicFile() {
+  if (fd_ >= 0) ::close(fd_);
+  if (!hidden_.empty()) ::unlink(hidden_.c_str());
+}
+
+void AtomicFile::fail(const char* what, int error) const {
+  throw WorkError(name_.string() + ": " + what + ": " + std::strerror(error));
+}
+
+void AtomicFile::open_anonymous() {
+  // A file without a name gets one through /proc.
+  if (::access("/proc/self/fd", X_OK) != 0) return;
+  fd_ = ::open(folder_of(target_).c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, kMode);
+  const bool not_supported = errno == EOPNOTSUPP || errno == EISDIR || errno == EINVAL;
+  if (fd_ < 0 && !not_supported) fail("cannot write", errno);
+}
+
+void AtomicFile::open_hidden() {
+  for (int attempt = 0; fd_ < 0; ++attempt) {
+    hidden_ = hidden_name(target_, attempt);
+    fd_ = ::open(hidden_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kMode);
+    if (fd_ < 0 && errno != EEXIST) {
+      const int error = errno;
+      hidden_.clear();
+      fail("cannot write", error);
+    }
+  }
+}
+
+void AtomicFile::write_at(std::uint64_t offset, std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::pwrite(fd_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+    if (written < 0) {
+      if (errno == EINTR) continue;
+      fail("cannot write", errno);
+    }
+    bytes = bytes.subspan(static_cast<std::size_t>(written));
+    offset += static_cast<std::uint64_t>(written);
+  }
+  size_ = std::max(size_, offset);
+}
+
+void AtomicFile::link_to_target() {
+  const std::string self = "/proc/self/fd/" + std::to_string(fd_);
+  const auto link = [&](const std::filesystem::path& to) {
+    return ::linkat(AT_FDCWD, self.c_str(), AT_FDCWD, to.c_str(), AT_SYMLINK_FOLLOW);
+  };
+  if (link(target_) == 0) return;
+  for (int attempt = 0; errno == EEXIST; ++attempt) {
+    const std::filesystem::path candidate = hidden_name(target_, attempt);
+    if (link(candidate) == 0) {
+      hidden_ = candidate;
+      return;
+    }
+  }
+  fail("cannot write", errno);
+}
+
+void AtomicFile::commit() {
+  if (hidden_.empty()) link_to_target();
+  if (!hidden_.empty()) {
+    if (::rename(hidden_.c_str(), target_.c_str()) != 0) fail("cannot write", errno);
+    hidden_.clear();
+  }
+  if (::close(std::exchange(fd_, -1)) != 0) fail("cannot write", errno);
+}
+
+}  // namespace clothbrdf

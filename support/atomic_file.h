@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+
+namespace clothbrdf {
+
+/// A file that appears under its name only when it is whole. Until commit() the bytes sit in a file
+/// without a name in the same folder (where the file system cannot do that, in a hidden file that
+/// the destructor removes), so a killed process leaves nothing behind and an old file of the same
+/// name stays as it was. There is no fsync: it is not safe against power loss. All members throw
+/// WorkError, in one line that starts with the file's name.
+class AtomicFile {
+ public:
+  /// The target must be a regular file or not exist; a symbolic link is followed.
+  explicit AtomicFile(const std::filesystem::path& target);
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+  AtomicFile(AtomicFile&& other) noexcept;
+  AtomicFile& operator=(AtomicFile&&) = delete;
+
+  /// The name as the user gave it, for messages.
+  const std::filesystem::path& name() const { return name_; }
+
+  void write_at(std::uint64_t offset, std::span<const std::byte> bytes);
+  std::uint64_t size() const { return size_; }
+
+  /// Gives the file its name, in place of an older one.
+  void commit();
+
+ private:
+  [[noreturn]] void fail(const char* what, int error) const;
+  void open_anonymous();
+  void open_hidden();
+  void link_to_target();
+
+  std::filesystem::path name_;
+  std::filesystem::path target_;
+  std::filesystem::path hidden_;  // empty while the file has no name
+  std::uint64_t size_ = 0;
+  int fd_ = -1;
+};
+
+}  // namespace clothbrdf

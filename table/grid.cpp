@@ -1,0 +1,227 @@
+#include "table/grid.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "support/errors.h"
+
+namespace clothbrdf {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+struct Kind {
+  GridKind kind;
+  const char* name;
+  std::vector<const char*> axes;
+};
+
+const std::array<Kind, 3>& kinds() {
+  static const std::array<Kind, 3> kAll = {{
+      {GridKind::kHalfDifference3d, "halfdiff3d", {"theta_h", "theta_d", "phi_d"}},
+      {GridKind::kHalfDifference4d, "halfdiff4d", {"theta_h", "phi_h", "theta_d", "phi_d"}},
+      {GridKind::kInOut, "inout", {"theta_i", "phi_i", "theta_o", "phi_o"}},
+  }};
+  return kAll;
+}
+
+const Kind& kind_of(GridKind kind) {
+  return *std::find_if(kinds().begin(), kinds().end(),
+                       [&](const Kind& k) { return k.kind == kind; });
+}
+
+Vector3<double> rotate_z(const Vector3<double>& v, const SinCos<double>& turn) {
+  return {v[0] * turn.cos - v[1] * turn.sin, v[0] * turn.sin + v[1] * turn.cos, v[2]};
+}
+
+Vector3<double> rotate_y(const Vector3<double>& v, const SinCos<double>& turn) {
+  return {v[0] * turn.cos + v[2] * turn.sin, v[1], v[2] * turn.cos - v[0] * turn.sin};
+}
+
+Vector3<double> direction(double theta_deg, double phi_deg) {
+  const SinCos<double> theta = sincosd(theta_deg);
+  const SinCos<double> phi = sincosd(phi_deg);
+  return {theta.sin * phi.cos, theta.sin * phi.sin, theta.cos};
+}
+
+double elevation_deg(const Vector3<double>& v) {
+  return std::atan2(std::hypot(v[0], v[1]), v[2]) / kDegree;
+}
+double azimuth_deg(const Vector3<double>& v) {
+  const double phi = std::atan2(v[1], v[0]) / kDegree;
+  return phi < 0 ? phi + 360 : phi;
+}
+
+bool is_halfdiff(GridKind kind) { return kind != GridKind::kInOut; }
+
+Grid halfdiff(GridKind kind, const std::vector<int>& sizes, double phi_d_range_deg) {
+  Grid grid{kind, {{"theta_h", Spacing::kSquared, sizes.front(), 0, 90, false}}};
+  if (kind == GridKind::kHalfDifference4d) {
+    grid.axes.push_back({"phi_h", Spacing::kUniform, sizes[1], 0, 180, true});
+  }
+  grid.axes.push_back({"theta_d", Spacing::kUniform, sizes[sizes.size() - 2], 0, 90, false});
+  grid.axes.push_back({"phi_d", Spacing::kUniform, sizes.back(), 0, phi_d_range_deg, true});
+  return grid;
+}
+
+}  // namespace
+
+std::size_t Grid::cell_count() const {
+  return std::accumulate(
+      axes.begin(), axes.end(), std::size_t{1},
+      [](std::size_t n, const Axis& a) { return n * static_cast<std::size_t>(a.size); });
+}
+
+std::size_t Grid::column_count() const {
+  return static_cast<std::size_t>(axes[axes.size() - 2].size) *
+         static_cast<std::size_t>(axes.back().size);
+}
+
+std::array<int, 4> Grid::indices(std::size_t cell) const {
+  std::array<int, 4> index{};
+  for (std::size_t a = axes.size(); a-- > 0;) {
+    const auto size = static_cast<std::size_t>(axes[a].size);
+    index[a] = static_cast<int>(cell % size);
+    cell /= size;
+  }
+  return index;
+}
+
+Directions Grid::directions(std::size_t cell) const {
+  const std::array<int, 4> index = indices(cell);
+  std::array<double, 4> angle{};
+  for (std::size_t a = 0; a < axes.size(); ++a) angle[a] = axes[a].node_deg(index[a]);
+  if (kind == GridKind::kInOut)
+    return {direction(angle[0], angle[1]), direction(angle[2], angle[3])};
+  const bool anisotropic = kind == GridKind::kHalfDifference4d;
+  const SinCos<double> theta_h = sincosd(angle[0]);
+  const SinCos<double> phi_h = sincosd(anisotropic ? angle[1] : 0.0);
+  const Vector3<double> wd = direction(angle[anisotropic ? 2 : 1], angle[anisotropic ? 3 : 2]);
+  const auto to_cloth = [&](const Vector3<double>& v) {
+    return rotate_z(rotate_y(v, theta_h), phi_h);
+  };
+  return {to_cloth(wd), to_cloth({-wd[0], -wd[1], wd[2]})};
+}
+
+bool Grid::node_above_horizon(std::size_t cell) const {
+  const std::array<int, 4> index = indices(cell);
+  const auto node = [&](std::size_t axis) { return sincosd(axes[axis].node_deg(index[axis])); };
+  if (kind == GridKind::kInOut) return node(0).cos > 0 && node(2).cos > 0;
+  const std::size_t d = axes.size() - 2;
+  const IncidenceCosines<double> c = incidence_cosines(node(0), node(d), node(d + 1).cos);
+  return c.i > 0 && c.o > 0;
+}
+
+bool Grid::any_above_horizon(std::size_t cell) const {
+  const std::array<int, 4> index = indices(cell);
+  const auto edge = [&](std::size_t axis, int offset) {
+    return axes[axis].edge_deg(index[axis] + offset);
+  };
+  if (kind == GridKind::kInOut) return edge(0, 0) < 90 && edge(2, 0) < 90;
+  // The lowest theta_h and theta_d and the phi_d nearest to a right angle see most of the sky.
+  const std::size_t d = axes.size() - 2;
+  const double low = edge(d + 1, 0);
+  const double high = edge(d + 1, 1);
+  double best = 1;
+  for (const double right_angle : {90.0, 270.0}) {
+    best = std::min(best, std::abs(sincosd(std::clamp(right_angle, low, high)).cos));
+  }
+  return incidence_cosines(sincosd(edge(0, 0)), sincosd(edge(d, 0)), best).i > 0;
+}
+
+std::optional<std::size_t> Grid::cell_of(const Vector3<double>& wi,
+                                         const Vector3<double>& wo) const {
+  std::array<double, 4> angle{};
+  if (kind == GridKind::kInOut) {
+    angle = {elevation_deg(wi), azimuth_deg(wi), elevation_deg(wo), azimuth_deg(wo)};
+  } else {
+    const Vector3<double> h = {wi[0] + wo[0], wi[1] + wo[1], wi[2] + wo[2]};
+    const double theta_h = elevation_deg(h);
+    const double phi_h = h[0] == 0 && h[1] == 0 ? 0 : azimuth_deg(h);
+    const Vector3<double> wd = rotate_y(rotate_z(wi, sincosd(-phi_h)), sincosd(-theta_h));
+    double phi_d = azimuth_deg(wd);
+    if (axes.back().highest_deg <= 180 && phi_d >= 180) phi_d -= 180;
+    const double theta_d = std::min(elevation_deg(wd), 90.0);
+    if (kind == GridKind::kHalfDifference4d) {
+      angle = {theta_h, phi_h, theta_d, phi_d};
+    } else {
+      angle = {theta_h, theta_d, phi_d, 0};
+    }
+  }
+  std::size_t cell = 0;
+  for (std::size_t a = 0; a < axes.size(); ++a) {
+    const std::optional<int> index = axes[a].cell_of(angle[a]);
+    if (!index) return std::nullopt;
+    cell = cell * static_cast<std::size_t>(axes[a].size) + static_cast<std::size_t>(*index);
+  }
+  return cell;
+}
+
+std::string Grid::description() const {
+  std::string text = kind_of(kind).name;
+  for (std::size_t a = 0; a < axes.size(); ++a)
+    text += (a == 0 ? ":" : "x") + std::to_string(axes[a].size);
+  return text;
+}
+
+Grid halfdiff3d(int theta_h, int theta_d, int phi_d, double phi_d_range_deg) {
+  return halfdiff(GridKind::kHalfDifference3d, {theta_h, theta_d, phi_d}, phi_d_range_deg);
+}
+
+Grid halfdiff4d(int theta_h, int phi_h, int theta_d, int phi_d, double phi_d_range_deg) {
+  return halfdiff(GridKind::kHalfDifference4d, {theta_h, phi_h, theta_d, phi_d}, phi_d_range_deg);
+}
+
+Grid inout(int theta_i, int phi_i, int theta_o, int phi_o) {
+  return {GridKind::kInOut,
+          {{"theta_i", Spacing::kNodes, theta_i, 0, 90, false},
+           {"phi_i", Spacing::kNodes, phi_i, 0, 360, true},
+           {"theta_o", Spacing::kNodes, theta_o, 0, 90, false},
+           {"phi_o", Spacing::kNodes, phi_o, 0, 360, true}}};
+}
+
+Grid parse_grid(const std::string& text, double phi_d_range_deg) {
+  const auto fail = [&](const std::string& allowed) -> InputError {
+    return InputError("--grid: '" + text + "' is not allowed: " + allowed);
+  };
+  const std::size_t colon = text.find(':');
+  const std::string name = text.substr(0, colon);
+  const auto kind =
+      std::find_if(kinds().begin(), kinds().end(), [&](const Kind& k) { return name == k.name; });
+  if (kind == kinds().end())
+    throw fail("halfdiff3d[:THxTDxPD], halfdiff4d[:THxPHxTDxPD] or inout[:TIxPIxTOxPO]");
+  std::vector<int> sizes;
+  if (colon == std::string::npos) {
+    const Grid standard = kind->kind == GridKind::kHalfDifference3d   ? halfdiff3d()
+                          : kind->kind == GridKind::kHalfDifference4d ? halfdiff4d()
+                                                                      : inout();
+    for (const Axis& axis : standard.axes) sizes.push_back(axis.size);
+  } else {
+    const char* at = text.data() + colon + 1;
+    const char* end = text.data() + text.size();
+    double cells = 1;
+    while (true) {
+      int size = 0;
+      const auto [next, error] = std::from_chars(at, end, size);
+      if (error != std::errc() || size < 1)
+        throw fail("sizes are whole numbers from 1, joined by 'x'");
+      sizes.push_back(size);
+      cells *= size;
+      if (next == end) break;
+      if (*next != 'x') throw fail("sizes are whole numbers from 1, joined by 'x'");
+      at = next + 1;
+    }
+    if (sizes.size() != kind->axes.size()) {
+      throw fail(name + " takes " + std::to_string(kind->axes.size()) + " sizes");
+    }
+    if (cells > kMaxCells) throw fail("at most 1e15 cells");
+  }
+  if (is_halfdiff(kind->kind)) return halfdiff(kind->kind, sizes, phi_d_range_deg);
+  return inout(sizes[0], sizes[1], sizes[2], sizes[3]);
+}
+
+}  // namespace clothbrdf

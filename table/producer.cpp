@@ -1,0 +1,60 @@
+#include "table/producer.h"
+
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tbb/parallel_pipeline.h>
+
+#include <algorithm>
+#include <vector>
+
+namespace clothbrdf {
+namespace {
+
+// Large enough that handing over costs nothing, small enough to stay in the second-level cache.
+constexpr std::size_t kBlockValues = 48 * 1024;
+
+struct Block {
+  std::size_t first_row = 0;
+  std::vector<double> values;
+};
+
+}  // namespace
+
+void stream_rows(const Producer& producer, int threads, const RowSink& take) {
+  const TableSpec& spec = producer.spec();
+  const std::size_t rows = spec.row_count();
+  const std::size_t rows_per_block = std::max<std::size_t>(1, kBlockValues / spec.row_values());
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                  static_cast<std::size_t>(threads));
+
+  // A ring of buffers: at most so many blocks are under way, and they are taken in order.
+  const std::size_t tokens = static_cast<std::size_t>(threads) + 1;
+  std::vector<Block> ring(tokens);
+  std::size_t next_row = 0;
+  std::size_t next_slot = 0;
+  const auto next = [&](tbb::flow_control& control) -> Block* {
+    if (next_row >= rows) {
+      control.stop();
+      return nullptr;
+    }
+    Block& block = ring[next_slot];
+    next_slot = (next_slot + 1) % tokens;
+    block.first_row = next_row;
+    block.values.resize(std::min(rows_per_block, rows - next_row) * spec.row_values());
+    next_row += rows_per_block;
+    return &block;
+  };
+  const auto compute = [&](Block* block) {
+    producer.fill_rows(block->first_row, block->values);
+    return block;
+  };
+  const auto hand_over = [&](Block* block) { take(block->first_row, block->values); };
+  tbb::parallel_pipeline(
+      tokens, tbb::make_filter<void, Block*>(tbb::filter_mode::serial_in_order, next) &
+                  tbb::make_filter<Block*, Block*>(tbb::filter_mode::parallel, compute) &
+                  tbb::make_filter<Block*, void>(tbb::filter_mode::serial_in_order, hand_over));
+}
+
+int default_threads() { return tbb::info::default_concurrency(); }
+
+}  // namespace clothbrdf

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <functional>
+#include <span>
+
+#include "model/directions.h"
+#include "table/table_spec.h"
+
+namespace clothbrdf {
+
+/// A source of the values of a table: the model's kernels, or a table in memory. Writers take one,
+/// so that a table need never be whole in memory. All members may be called from several threads at
+/// once.
+class Producer {
+ public:
+  virtual ~Producer() = default;
+  virtual const TableSpec& spec() const = 0;
+
+  /// Values of whole rows from first_row on, as many as fit: values[row][channel][column]. The same
+  /// bits however rows are grouped.
+  virtual void fill_rows(std::size_t first_row, std::span<double> values) const = 0;
+
+  /// Values at any pairs of directions: values[pair][channel]; 0 on or below the horizon.
+  virtual void fill_pairs(std::span<const DirectionPair> pairs, std::span<double> values) const = 0;
+};
+
+/// Takes rows in order; may change the values.
+using RowSink = std::function<void(std::size_t first_row, std::span<double> values)>;
+
+/// All rows of a producer in order, computed in blocks on `threads` threads while earlier blocks
+/// are taken. Memory: a few blocks of about a megabyte, or of one row where that is more. What
+/// `take` throws ends the work.
+void stream_rows(const Producer& producer, int threads, const RowSink& take);
+
+/// Threads to use when the user does not say: one a processor.
+int default_threads();
+
+}  // namespace clothbrdf

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "model/reflectance.h"
+#include "table/table_spec.h"
+
+namespace clothbrdf {
+
+/// Values of whole rows of one kind of grid: the grid's part of a Producer.
+class Kernel {
+ public:
+  virtual ~Kernel() = default;
+  virtual void fill_rows(std::size_t first_row, std::span<double> values) const = 0;
+};
+
+/// The sums over lobes and the diffuse term for one half vector, ready for the channels of a table:
+/// f = factor * sums(channel)[k] + diffuse(channel).
+class ChannelSums {
+ public:
+  ChannelSums(const ClothModel<double>& model, std::size_t count);
+
+  std::span<double> specular() { return specular_; }
+  std::span<double> internal() { return internal_; }
+
+  /// f of a channel for incidence cosine k: the part to be multiplied by the directional factor.
+  double directional(const Channel& channel, std::size_t k) const;
+  /// The part that is the same for all directions above the horizon.
+  double constant(const Channel& channel) const;
+
+ private:
+  std::size_t count_;
+  std::vector<double> specular_;  // [k]
+  std::vector<double> internal_;  // [colour][k]
+  std::vector<double> diffuse_;   // [colour]
+};
+
+}  // namespace clothbrdf

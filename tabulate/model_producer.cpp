@@ -1,0 +1,91 @@
+#include "tabulate/model_producer.h"
+
+#include <string>
+#include <utility>
+
+#include "model/parameters.h"
+#include "support/errors.h"
+#include "support/version.h"
+#include "tabulate/halfdiff_points.h"
+#include "tabulate/inout_points.h"
+
+namespace clothbrdf {
+namespace {
+
+double channel_value(const Components& f, const Channel& channel) {
+  switch (channel.part) {
+    case Part::kSpecular: return f.specular[channel.colour];
+    case Part::kInternal: return f.internal[channel.colour];
+    case Part::kDiffuse: return f.diffuse[channel.colour];
+    case Part::kTotal: break;
+  }
+  return f.total(channel.colour);
+}
+
+class ModelProducer final : public Producer {
+ public:
+  ModelProducer(const TableSpec& spec, int threads)
+      : spec_(spec), model_(*spec.provenance.material, spec.provenance.effects) {
+    if (!spec_.has_grid()) return;
+    if (spec_.grid().kind == GridKind::kInOut) {
+      kernel_ = std::make_unique<InOutPoints>(spec_, model_);
+    } else {
+      kernel_ = std::make_unique<HalfDifferencePoints>(spec_, model_, threads);
+    }
+  }
+
+  const TableSpec& spec() const override { return spec_; }
+
+  void fill_rows(std::size_t first_row, std::span<double> values) const override {
+    if (kernel_) {
+      kernel_->fill_rows(first_row, values);
+    } else {
+      fill_pairs(std::span(spec_.pairs()).subspan(first_row, values.size() / spec_.row_values()),
+                 values);
+    }
+  }
+
+  void fill_pairs(std::span<const DirectionPair> pairs, std::span<double> values) const override {
+    std::size_t next = 0;
+    for (const DirectionPair& pair : pairs) {
+      const Components f = model_.evaluate(pair_geometry(pair, model_.material().rotation_deg));
+      for (const Channel& channel : spec_.channels) values[next++] = channel_value(f, channel);
+    }
+  }
+
+ private:
+  TableSpec spec_;
+  ClothModel<double> model_;
+  std::unique_ptr<Kernel> kernel_;
+};
+
+}  // namespace
+
+TableSpec material_spec(const Material& material, const Effects& effects, const Grid& grid,
+                        const CellRule& cells, bool with_components) {
+  return {grid,
+          material_channels(material, with_components),
+          cells,
+          {material, effects, std::string("clothbrdf ") + kVersion}};
+}
+
+std::unique_ptr<Producer> make_producer(const TableSpec& spec, int threads) {
+  if (!spec.provenance.material) throw InputError("the table names no material to compute it from");
+  check_material(*spec.provenance.material);
+  for (const Channel& channel : spec.channels) {
+    if (channel.colour >= spec.provenance.material->channel_count()) {
+      throw InputError("channel " + full_name(channel) + " is not one of the material's");
+    }
+  }
+  if (spec.cells.average) {
+    if (!spec.has_grid()) throw InputError("averages need cells: a list of pairs has none");
+    if (spec.provenance.material->reflectance == Reflectance::kPaper) {
+      throw InputError(
+          "--cells average: not for a material of reflectance 'paper', where the mean over cells "
+          "at the horizon diverges; use --cells point");
+    }
+  }
+  return std::make_unique<ModelProducer>(spec, threads);
+}
+
+}  // namespace clothbrdf

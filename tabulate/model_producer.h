@@ -1,0 +1,21 @@
+#pragma once
+
+#include <memory>
+
+#include "table/producer.h"
+
+namespace clothbrdf {
+
+/// What a table made of a material says of itself. A table of the material's paper convention
+/// covers phi_d once around where the grid does; where the grid stops at 180 degrees it holds the
+/// mean of f(wi, wo) and f(wo, wi).
+TableSpec material_spec(const Material& material, const Effects& effects, const Grid& grid,
+                        const CellRule& cells = {}, bool with_components = false);
+
+/// The values of a table made of the material that its provenance names, from the kernel that fits
+/// its samples. What all rows share is computed here, on `threads` threads. Throws InputError where
+/// the spec cannot be met: averages of the paper's convention (they diverge), of a list of pairs,
+/// channels that the material lacks, no material.
+std::unique_ptr<Producer> make_producer(const TableSpec& spec, int threads);
+
+}  // namespace clothbrdf

@@ -1,0 +1,104 @@
+#include "tabulate/path_matrix.h"
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+
+#include "tabulate/vectorise.h"
+
+namespace clothbrdf {
+namespace {
+
+// Sum of products in a fixed order that fills vector registers: the same bits for every register
+// width.
+CLOTHBRDF_VECTORISE double dot(const double* a, const double* b, std::size_t count) {
+  constexpr std::size_t kLanes = 16;
+  double lanes[kLanes] = {};
+  std::size_t i = 0;
+  for (; i + kLanes <= count; i += kLanes) {
+    for (std::size_t l = 0; l < kLanes; ++l) lanes[l] += a[i + l] * b[i + l];
+  }
+  double sum = 0;
+  for (; i < count; ++i) sum += a[i] * b[i];
+  for (const double lane : lanes) sum += lane;
+  return sum;
+}
+
+}  // namespace
+
+PathMatrix::PathMatrix(const ClothModel<double>& model, std::vector<double> cos_theta_d,
+                       int threads)
+    : model_(&model), equal_yarns_(model.material().warp == model.material().weft) {
+  for (std::size_t y = 0; y < distinct_yarns(); ++y) lobe_count_ += model.yarns()[y].lobes.size();
+  weights_.resize(cos_theta_d.size() * model.channel_count() * lobe_count_);
+  tbb::task_arena arena(threads);
+  arena.execute([&] {
+    tbb::parallel_for(std::size_t{0}, cos_theta_d.size(),
+                      [&](std::size_t k) { fill_weights(k, cos_theta_d[k]); });
+  });
+}
+
+void PathMatrix::fill_weights(std::size_t k, double cos_theta_d) {
+  const BasicMaterial<double>& material = model_->material();
+  std::vector<double> path;
+  for (std::size_t c = 0; c < model_->channel_count(); ++c) {
+    double* const to = weights_.data() + (k * model_->channel_count() + c) * lobe_count_;
+    double* next = to + distinct_yarns();
+    for (std::size_t y = 0; y < distinct_yarns(); ++y) {
+      const BasicYarn<double>& yarn = model_->yarns()[y].yarn;
+      path.resize(model_->yarns()[y].lobes.size());
+      path_weights(yarn, material.paths, fresnel(cos_theta_d, yarn.refractive_index),
+                   yarn.absorption[c], std::span<double>(path));
+      to[y] = path[0] * material.weights.specular;
+      next = std::transform(path.begin() + 1, path.end(), next,
+                            [&](double w) { return w * material.weights.internal; });
+    }
+  }
+}
+
+template <class LobeDensity>
+void PathMatrix::fill_densities(std::span<double> density, const LobeDensity& lobe_density) const {
+  std::size_t next = distinct_yarns();
+  for (std::size_t y = 0; y < 2; ++y) {
+    const PreparedYarn<double>& yarn = model_->yarns()[y];
+    const bool add = equal_yarns_ && y == 1;
+    if (add) next = 1;
+    for (std::size_t j = 0; j < yarn.lobes.size(); ++j) {
+      const Lobe<double>& lobe = yarn.lobes[j];
+      double& to = density[j > 0 ? next++ : (add ? 0 : y)];
+      to = (add ? to : 0) + yarn.share * lobe_density(y, lobe.axes) / lobe.norm;
+    }
+  }
+}
+
+void PathMatrix::densities(double h_weft, double h_warp, double h_n,
+                           std::span<double> density) const {
+  fill_densities(density, [&](std::size_t yarn, const LobeAxes<double>& axes) {
+    const auto [along, across] = ClothModel<double>::in_yarn_frame(yarn, h_weft, h_warp);
+    return lobe_height(along, across, h_n, axes);
+  });
+}
+
+void PathMatrix::mean_densities(const SinCos<double>& theta_h, std::span<double> density) const {
+  fill_densities(density, [&](std::size_t, const LobeAxes<double>& axes) {
+    return lobe_azimuthal_mean(theta_h.sin, theta_h.cos, axes);
+  });
+}
+
+void PathMatrix::sums(std::span<const double> density, std::size_t first,
+                      std::span<double> specular, std::span<double> internal) const {
+  const std::size_t count = specular.size();
+  const std::size_t colours = model_->channel_count();
+  const std::size_t yarns = distinct_yarns();
+  const double* weights = weights_.data() + first * colours * lobe_count_;
+  for (std::size_t k = 0; k < count; ++k) {
+    specular[k] = dot(density.data(), weights, yarns);
+    for (std::size_t c = 0; c < colours; ++c) {
+      internal[c * count + k] = dot(density.data() + yarns, weights + yarns, lobe_count_ - yarns);
+      weights += lobe_count_;
+    }
+  }
+}
+
+}  // namespace clothbrdf
