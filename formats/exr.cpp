@@ -142,6 +142,10 @@ void write_exr(const Producer& producer, AtomicFile& file, const WriteOptions& o
     const Imf::PixelType type = options.half ? Imf::HALF : Imf::FLOAT;
     for (const Channel& channel : spec.channels)
       header.channels().insert(full_name(channel), Imf::Channel(type));
+    if (!options.compress) {
+      file.reserve(spec.cell_count() * spec.channels.size() *
+                   (options.half ? sizeof(half) : sizeof(float)));
+    }
     AtomicOStream stream(file);
     Imf::OutputFile out(stream, header);
     if (options.half) {

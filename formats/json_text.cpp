@@ -43,7 +43,7 @@ bool is_word(char c) {
          c == '+';
 }
 
-// The word around `offset`, for instance "NaN" at any of its letters.
+// The word around `offset`, for instance "NaN" at any of its letters; a single character elsewhere.
 std::string_view word_at(std::string_view text, std::size_t offset) {
   if (offset >= text.size()) return {};
   std::size_t begin = offset;
@@ -116,9 +116,10 @@ class StrictBuilder {
       fail((levels_.empty() ? "" : pointer() + ": ") + one_line(token) +
            " is not allowed: a number that a double can hold (at most 1.797e308)");
     }
-    const std::size_t offset = position == 0 ? 0 : position - 1;
-    const std::string_view word = word_at(text_, std::min(offset, text_.size()));
-    const Place place = place_of(text_, offset);
+    const std::size_t offset = std::min(position == 0 ? 0 : position - 1, text_.size());
+    const std::string_view word = word_at(text_, offset);
+    const Place place = place_of(
+        text_, word.empty() ? offset : static_cast<std::size_t>(word.data() - text_.data()));
     std::string message =
         "line " + std::to_string(place.line) + ", column " + std::to_string(place.column);
     const std::string near = pointer();
@@ -128,7 +129,7 @@ class StrictBuilder {
       reason = "a value is a finite number, a string, true, false, null, [...] or {...}";
     }
     message += ": not JSON: " + reason;
-    if (!word.empty() && word != "\"")
+    if (!word.empty() && word[0] > ' ' && word != "\"")
       message += "; found " + json(one_line(word, 40)).dump(-1, ' ', true, kReplace);
     fail(message);
   }

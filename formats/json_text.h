@@ -10,9 +10,9 @@ namespace clothbrdf {
 
 // Internal to formats/: what all our JSON inputs share.
 
-/// Our JSON inputs are written by people or hold a report; the largest, a fit report, stays below 1
-/// MiB. The limit keeps a wrong file name (a table of gigabytes) from filling the memory: a parsed
-/// file takes up to 16 times its size.
+/// Our JSON inputs are written by people or hold a report; the largest, a fit report, stays below
+/// 1 MiB. The limit keeps a wrong file name (a table of gigabytes) from filling the memory: once
+/// parsed, a file takes up to 30 times its size.
 inline constexpr std::size_t kMaxJsonBytes = 16U << 20U;
 
 /// Our schemas nest 8 deep at most. The limit bounds every recursion over a parsed file.

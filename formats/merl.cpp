@@ -47,6 +47,7 @@ void write_merl(const Producer& producer, AtomicFile& file, const WriteOptions& 
   if (options.half || options.compress)
     throw InputError(name + ": MERL has no half or compressed flavour");
 
+  file.reserve(kFileBytes);
   file.write_at(0, std::as_bytes(std::span(kSizes)));
   const std::size_t columns = spec.column_count();
   stream_rows(producer, options.threads, [&](std::size_t row, std::span<double> values) {

@@ -264,7 +264,7 @@ class Explainer {
     const json items = schema.value("items", json::object());
     const std::vector<std::string> types =
         type_names(resolve(items.is_array() ? items.at(0) : items));
-    const std::string noun = types.size() == 1 ? types[0] + "s" : "values";
+    std::string noun = types.size() == 1 ? types[0] + "s" : "values";
     const json least = schema.value("minItems", json());
     const json most = schema.value("maxItems", json());
     if (least.is_null() && most.is_null()) return noun;
@@ -295,13 +295,18 @@ const Schema& schema_named(std::string_view file) {
 
 }  // namespace
 
+std::string find_violation(const json& schema, const json& value) {
+  if (Validator(schema).accepts(value)) return "";
+  const Violation violation = Explainer(schema).explain(schema, value, "");
+  return (violation.pointer.empty() ? "" : violation.pointer + ": ") + violation.text;
+}
+
 void check_against_schema(const json& value, std::string_view schema_file,
                           const std::string& file_name) {
   const Schema& schema = schema_named(schema_file);
   if (schema.validator.accepts(value)) return;
-  const Violation violation = Explainer(schema.text).explain(schema.text, value, "");
   throw InputError(one_line(file_name, kLongestFileName) + ": " +
-                   (violation.pointer.empty() ? "" : violation.pointer + ": ") + violation.text);
+                   find_violation(schema.text, value));
 }
 
 }  // namespace clothbrdf

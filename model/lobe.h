@@ -38,6 +38,24 @@ T lobe_azimuthal_mean(const T& sin_theta_h, const T& cos_theta_h, const LobeAxes
   return cos_theta_h * axes.along * axes.across / (sqrt(s2 + a * a) * sqrt(s2 + b * b));
 }
 
+/// Mean of lobe_height over azimuths of h from `from` to `to`, radians from the yarn's direction, 0 < to - from <= pi.
+template <class T>
+T lobe_azimuthal_mean(const T& sin_theta_h, const T& cos_theta_h, const LobeAxes<T>& axes, const T& from,
+                      const T& to) {
+  using std::atan2;
+  using std::cos;
+  using std::sin;
+  using std::sqrt;
+  const T u = sin_theta_h / axes.along;
+  const T v = sin_theta_h / axes.across;
+  const T p = sqrt(u * u + cos_theta_h * cos_theta_h);
+  const T q = sqrt(v * v + cos_theta_h * cos_theta_h);
+  // The integral of 1 / (p^2 cos^2 + q^2 sin^2) is atan2(q sin, p cos) / (p q).
+  T turned = atan2(q * sin(to), p * cos(to)) - atan2(q * sin(from), p * cos(from));
+  if (turned < T(0)) turned += T(2) * pi<T>();
+  return cos_theta_h * turned / (p * q * (to - from));
+}
+
 /// Carlson's R_D(x, y, z) for x, y >= 0 (not both 0), z > 0, by duplication (DLMF 19.36).
 /// Templated, unlike the libraries' versions, so that automatic differentiation passes through;
 /// checked against Boost.Math. Relative error below 8 eps.

@@ -40,7 +40,7 @@ Problem find_yarn_problem(const Yarn& yarn, const std::string& place) {
   }
   if (yarn.absorption.empty() || yarn.absorption.size() > kMaxChannels) {
     return MaterialProblem{place + "/absorption",
-                           std::to_string(yarn.absorption.size()) + " values",
+                           "an array of " + std::to_string(yarn.absorption.size()) + " values",
                            "1 to " + std::to_string(kMaxChannels) + " values"};
   }
   const ParameterInfo& absorption = parameter("/warp/absorption/0");
@@ -50,7 +50,7 @@ Problem find_yarn_problem(const Yarn& yarn, const std::string& place) {
       return p;
   }
   if (Problem p = check("/layers", yarn.layers)) {
-    p->allowed += ", an integer";
+    p->allowed.replace(0, std::string_view("a number").size(), "an integer");
     return p;
   }
   if (Problem p = check("/refractive_index", yarn.refractive_index)) return p;
@@ -70,18 +70,20 @@ Problem find_channel_problem(const Material& material) {
   const std::size_t channels = material.channel_count();
   const std::string as_many = std::to_string(channels) + " values, as many as in /warp/absorption";
   if (material.weft.absorption.size() != channels) {
-    return MaterialProblem{"/weft/absorption",
-                           std::to_string(material.weft.absorption.size()) + " values", as_many};
+    return MaterialProblem{
+        "/weft/absorption",
+        "an array of " + std::to_string(material.weft.absorption.size()) + " values", as_many};
   }
   const std::vector<double>& wavelengths = material.wavelengths_nm;
   if (wavelengths.empty()) {
     if (channels == 3) return {};
     return MaterialProblem{
-        "/warp/absorption", std::to_string(channels) + " values",
+        "/warp/absorption", "an array of " + std::to_string(channels) + " values",
         "3 values (linear R, G, B), or as many as in /wavelengths_nm, which is missing"};
   }
   if (wavelengths.size() != channels) {
-    return MaterialProblem{"/wavelengths_nm", std::to_string(wavelengths.size()) + " values",
+    return MaterialProblem{"/wavelengths_nm",
+                           "an array of " + std::to_string(wavelengths.size()) + " values",
                            as_many};
   }
   double previous = 0;

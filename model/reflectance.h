@@ -75,8 +75,13 @@ class ClothModel {
  public:
   explicit ClothModel(const BasicMaterial<T>& material, const Effects& effects = {})
       : material_(apply_effects(material, effects)),
-        yarns_{prepare(material_.warp, material_.warp_fraction),
-               prepare(material_.weft, T(1) - material_.warp_fraction)} {}
+        yarns_{{{material_.warp, material_.warp_fraction, {}},
+                {material_.weft, T(1) - material_.warp_fraction, {}}}} {
+    yarns_[0].lobes = prepare_lobes(material_.warp);
+    // Equal values may still carry different derivatives.
+    const bool same = !kCarriesDerivative<T> && material_.warp == material_.weft;
+    yarns_[1].lobes = same ? yarns_[0].lobes : prepare_lobes(material_.weft);
+  }
 
   /// The material less the effects that are off.
   const BasicMaterial<T>& material() const { return material_; }
@@ -138,14 +143,14 @@ class ClothModel {
   }
 
  private:
-  PreparedYarn<T> prepare(const BasicYarn<T>& yarn, const T& share) const {
-    PreparedYarn<T> prepared{yarn, share, {}};
+  std::vector<Lobe<T>> prepare_lobes(const BasicYarn<T>& yarn) const {
+    std::vector<Lobe<T>> lobes;
     for (int j = 0; j < lobe_count(yarn, material_.paths); ++j) {
       const LobeAxes<T> axes = lobe_axes(yarn, j);
-      prepared.lobes.push_back(
+      lobes.push_back(
           {axes, material_.reflectance == Reflectance::kMicrofacet ? lobe_integral(axes) : T(1)});
     }
-    return prepared;
+    return lobes;
   }
 
   BasicMaterial<T> material_;

@@ -81,6 +81,17 @@ void AtomicFile::open_hidden() {
   }
 }
 
+void AtomicFile::reserve(std::uint64_t bytes) {
+#ifdef __linux__
+  if (::fallocate(fd_, 0, 0, static_cast<off_t>(bytes)) != 0 &&
+      (errno == ENOSPC || errno == EFBIG || errno == EDQUOT)) {
+    fail("cannot write", errno);
+  }
+#else
+  static_cast<void>(bytes);
+#endif
+}
+
 void AtomicFile::write_at(std::uint64_t offset, std::span<const std::byte> bytes) {
   while (!bytes.empty()) {
     const ssize_t written = ::pwrite(fd_, bytes.data(), bytes.size(), static_cast<off_t>(offset));

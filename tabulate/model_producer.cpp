@@ -6,7 +6,9 @@
 #include "model/parameters.h"
 #include "support/errors.h"
 #include "support/version.h"
+#include "tabulate/halfdiff_average.h"
 #include "tabulate/halfdiff_points.h"
+#include "tabulate/inout_average.h"
 #include "tabulate/inout_points.h"
 
 namespace clothbrdf {
@@ -28,7 +30,13 @@ class ModelProducer final : public Producer {
       : spec_(spec), model_(*spec.provenance.material, spec.provenance.effects) {
     if (!spec_.has_grid()) return;
     if (spec_.grid().kind == GridKind::kInOut) {
-      kernel_ = std::make_unique<InOutPoints>(spec_, model_);
+      if (spec_.cells.average) {
+        kernel_ = std::make_unique<InOutAverage>(spec_, model_, threads);
+      } else {
+        kernel_ = std::make_unique<InOutPoints>(spec_, model_);
+      }
+    } else if (spec_.cells.average) {
+      kernel_ = std::make_unique<HalfDifferenceAverage>(spec_, model_, threads);
     } else {
       kernel_ = std::make_unique<HalfDifferencePoints>(spec_, model_, threads);
     }

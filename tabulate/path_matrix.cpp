@@ -29,7 +29,9 @@ CLOTHBRDF_VECTORISE double dot(const double* a, const double* b, std::size_t cou
 
 PathMatrix::PathMatrix(const ClothModel<double>& model, std::vector<double> cos_theta_d,
                        int threads)
-    : model_(&model), equal_yarns_(model.material().warp == model.material().weft) {
+    : model_(&model),
+      size_(cos_theta_d.size()),
+      equal_yarns_(model.material().warp == model.material().weft) {
   for (std::size_t y = 0; y < distinct_yarns(); ++y) lobe_count_ += model.yarns()[y].lobes.size();
   weights_.resize(cos_theta_d.size() * model.channel_count() * lobe_count_);
   tbb::task_arena arena(threads);
@@ -83,6 +85,15 @@ void PathMatrix::densities(double h_weft, double h_warp, double h_n,
 void PathMatrix::mean_densities(const SinCos<double>& theta_h, std::span<double> density) const {
   fill_densities(density, [&](std::size_t, const LobeAxes<double>& axes) {
     return lobe_azimuthal_mean(theta_h.sin, theta_h.cos, axes);
+  });
+}
+
+void PathMatrix::mean_densities(const SinCos<double>& theta_h, double from, double to,
+                                std::span<double> density) const {
+  fill_densities(density, [&](std::size_t yarn, const LobeAxes<double>& axes) {
+    const double along =
+        yarn == 0 ? pi<double>() / 2 : 0.0;  // azimuth of the yarn: the warp lies along y
+    return lobe_azimuthal_mean(theta_h.sin, theta_h.cos, axes, from - along, to - along);
   });
 }
 

@@ -21,6 +21,9 @@ class PathMatrix {
   /// the model.
   PathMatrix(const ClothModel<double>& model, std::vector<double> cos_theta_d, int threads);
 
+  /// Number of incidence cosines.
+  std::size_t size() const { return size_; }
+
   /// Length of a density vector.
   std::size_t lobe_count() const { return lobe_count_; }
 
@@ -29,6 +32,11 @@ class PathMatrix {
 
   /// Their mean over the azimuth of h.
   void mean_densities(const SinCos<double>& theta_h, std::span<double> density) const;
+
+  /// Their mean over azimuths of h from `from` to `to`, radians in the weave's frame (0 = along the
+  /// weft), at most pi apart.
+  void mean_densities(const SinCos<double>& theta_h, double from, double to,
+                      std::span<double> density) const;
 
   /// The sums over lobes for one half vector at the incidence cosines first, first + 1, ...:
   /// specular[k] and internal[colour][k].
@@ -42,6 +50,7 @@ class PathMatrix {
   void fill_densities(std::span<double> density, const LobeDensity& lobe_density) const;
 
   const ClothModel<double>* model_;
+  std::size_t size_;
   bool equal_yarns_;
   std::size_t lobe_count_ = 0;
   // [k][colour][lobe]. Lobes: the surface reflection of each yarn, then the other lobes of each.

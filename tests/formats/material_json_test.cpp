@@ -1,10 +1,11 @@
 #include "formats/material_json.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
-#include <functional>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <random>
 #include <sstream>
@@ -24,6 +25,7 @@ using nlohmann::json;
 
 const std::filesystem::path kMaterials = std::filesystem::path(CLOTHBRDF_SOURCE_DIR) / "materials";
 constexpr const char* kName = "cloth.json";
+const std::string kAccepted;
 
 std::string silk_text() {
   std::ifstream file(kMaterials / "silk.json", std::ios::binary);
@@ -57,7 +59,7 @@ bool is_one_line(const std::string& message) {
          message.find_first_of("\r\n") == std::string::npos;
 }
 
-// The message of the InputError that the text is refused with; "" if it is accepted.
+// The message of the InputError that the text is refused with; kAccepted if there is none.
 std::string refusal(const std::string& text) {
   try {
     parse_material(text, kName);
@@ -171,9 +173,10 @@ TEST_CASE("every key reaches its field") {
   const Material material = parse_material(R"({"$schema": "x", "name": "n", "reflectance": "paper",
       "paths": "single", "weights": {"specular": 1, "internal": 2, "diffuse": 3}, "diffuse_path": 4,
       "warp_fraction": 0.25, "rotation_deg": -30, "wavelengths_nm": [400, 500.5],
-      "warp": {"lobe_axes": [0.125, 0.5], "absorption": [5, 6], "layers": 7, "refractive_index": 1.25,
-               "scatter": 0.75, "scatter_limit": 0.875},
-      "weft": {"lobe_axes": [0.25, 1], "absorption": [8, 9], "layers": 10, "refractive_index": 2}})",
+      "warp": {"lobe_axes": [0.125, 0.5], "absorption": [5, 6], "layers": 7,
+               "refractive_index": 1.25, "scatter": 0.75, "scatter_limit": 0.875},
+      "weft": {"lobe_axes": [0.25, 1], "absorption": [8, 9], "layers": 10,
+               "refractive_index": 2}})",
                                            kName);
   const Material expected{"n",
                           Reflectance::kPaper,
@@ -191,7 +194,8 @@ TEST_CASE("every key reaches its field") {
 TEST_CASE("left-out keys take the defaults of the parameter table") {
   const Material material =
       parse_material(R"({"weights": {"specular": 1, "internal": 1, "diffuse": 1},
-      "warp": {"lobe_axes": [0.1, 0.4], "absorption": [0, 0, 0], "layers": 1, "refractive_index": 1.5}})",
+      "warp": {"lobe_axes": [0.1, 0.4], "absorption": [0, 0, 0], "layers": 1,
+               "refractive_index": 1.5}})",
                      kName);
   Material expected;
   expected.weights = {1, 1, 1};
@@ -266,14 +270,15 @@ TEST_CASE("literals that JSON does not have are refused with line, column and pl
   for (const std::string literal : {"NaN", "nan", "Infinity", "inf", "None", "True"}) {
     const std::string message = refusal(replaced(silk_text(), "1.55", literal));
     CHECK_THAT(message,
-               ContainsSubstring("line 13, column 25, near /warp/refractive_index: not JSON: "));
+               ContainsSubstring("line 14, column 25, near /warp/refractive_index: not JSON: "));
     CHECK_THAT(message, ContainsSubstring("a finite number, a string, true"));
     CHECK_THAT(message, ContainsSubstring("found \"" + literal + "\""));
   }
 }
 
 TEST_CASE("a number that overflows a double is refused") {
-  for (const std::string number : {"1e999", "-1e999", "1" + std::string(400, '0')}) {
+  for (const std::string& number :
+       {std::string("1e999"), std::string("-1e999"), "1" + std::string(400, '0')}) {
     const std::string message =
         refusal(replaced(silk_text(), "\"rotation_deg\": 0", "\"rotation_deg\": " + number));
     CHECK_THAT(message, ContainsSubstring("/rotation_deg: " + number.substr(0, 5)));
@@ -303,7 +308,7 @@ TEST_CASE("values out of range are refused, the ends are accepted, by schema and
         json& value = file[json::json_pointer(pointer)];
         value = end;
         if (integer) value = static_cast<int>(end);
-        CHECK(refusal(file) == "");
+        CHECK(refusal(file) == kAccepted);
         const double outside =
             integer ? end + (end == info.lowest ? -1 : 1)
                     : std::nextafter(end, end == info.lowest ? -kInfinity : kInfinity);
@@ -356,7 +361,9 @@ TEST_CASE("a missing key is named with what it needs") {
     const json::json_pointer place(pointer);
     json file = silk();
     file[place.parent_pointer()].erase(place.back());
-    CHECK(refusal(file) == pointer + ": missing, needed is " + needed);
+    std::string message = pointer;
+    message += ": missing, needed is " + needed;
+    CHECK(refusal(file) == message);
   }
 }
 
@@ -374,7 +381,7 @@ TEST_CASE("what is not JSON is refused with line and column") {
              ContainsSubstring("UTF-8"));  // surrogate
   CHECK_THAT(refusal(replaced(silk_text(), "silk", "\xE7\x8E\x89\n")),
              ContainsSubstring(
-                 "line 4, column 1, near /name: not JSON: invalid string: control character"));
+                 "line 3, column 13, near /name: not JSON: invalid string: control character"));
   CHECK_THAT(refusal(silk_text() + std::string(1, '\0') + "garbage"),
              ContainsSubstring("a zero byte"));
   CHECK(refusal("\"" + std::string(100000, 'x')).size() < 300);
@@ -394,12 +401,15 @@ TEST_CASE("an empty file is refused") {
 TEST_CASE("nesting too deep is refused, however deep") {
   const std::size_t limit = kMaxJsonDepth;
   const auto nested = [](std::size_t depth) {
-    return std::string(depth, '[') + std::string(depth, ']');
+    std::string text(depth, '[');
+    return text.append(depth, ']');
   };
   CHECK_THAT(refusal(nested(limit)), ContainsSubstring("is not allowed: an object"));
   CHECK_THAT(refusal(nested(limit + 1)),
              ContainsSubstring("/0/0/0: nested too deep: at most 32 levels are allowed"));
-  CHECK_THAT(refusal(std::string(10'000'000, '[')), ContainsSubstring("nested too deep"));
+  std::string deep;
+  deep.resize(10'000'000, '[');
+  CHECK_THAT(refusal(deep), ContainsSubstring("nested too deep"));
   std::string objects;
   for (int i = 0; i < 100000; ++i) objects += "{\"a\":";
   CHECK_THAT(refusal(objects), ContainsSubstring("/a/a/a: nested too deep"));
@@ -407,7 +417,7 @@ TEST_CASE("nesting too deep is refused, however deep") {
 
 TEST_CASE("a file of more than 16 MiB is refused, one of 16 MiB is looked at") {
   const std::string text = silk_text();
-  CHECK(refusal(text + std::string(kMaxJsonBytes - text.size(), ' ')) == "");
+  CHECK(refusal(text + std::string(kMaxJsonBytes - text.size(), ' ')) == kAccepted);
   CHECK(refusal(text + std::string(kMaxJsonBytes - text.size() + 1, ' ')) ==
         "too large: at most 16 MiB are allowed");
 }
@@ -425,32 +435,35 @@ TEST_CASE("a file that is cut anywhere is refused") {
   text.erase(text.find_last_of('}') + 1);
   for (std::size_t size = 0; size < text.size(); ++size) {
     CAPTURE(size);
-    CHECK(refusal(text.substr(0, size)) != "");
+    CHECK(refusal(text.substr(0, size)) != kAccepted);
   }
-  CHECK(refusal(text) == "");
+  CHECK(refusal(text) == kAccepted);
 }
 
 TEST_CASE("values that contradict one another are refused") {
   CHECK(refusal(changed("/weft/scatter_limit", 0.3)) ==
         "/weft/scatter_limit: 0.3 is not allowed: a number from 0.4 to 1 (not below the wider of "
         "lobe_axes)");
-  CHECK(refusal(changed("/warp/scatter_limit", 0.4)) == "");
+  CHECK(refusal(changed("/warp/scatter_limit", 0.4)) == kAccepted);
   CHECK(refusal(changed("/weft/absorption", {0.1, 0.2})) ==
-        "/weft/absorption: 2 values is not allowed: 3 values, as many as in /warp/absorption");
+        "/weft/absorption: an array of 2 values is not allowed: 3 values, as many as in "
+        "/warp/absorption");
   json file = changed("/warp/absorption", {0.1, 0.2});
   file["weft"]["absorption"] = {0.3, 0.4};
   CHECK(refusal(file) ==
-        "/warp/absorption: 2 values is not allowed: 3 values (linear R, G, B), or as many as in "
+        "/warp/absorption: an array of 2 values is not allowed: 3 values (linear R, G, B), or as "
+        "many as in "
         "/wavelengths_nm, which is missing");
   file["wavelengths_nm"] = {400, 500};
-  CHECK(refusal(file) == "");
+  CHECK(refusal(file) == kAccepted);
   file["wavelengths_nm"] = {400, 500, 600};
   CHECK(refusal(file) ==
-        "/wavelengths_nm: 3 values is not allowed: 2 values, as many as in /warp/absorption");
+        "/wavelengths_nm: an array of 3 values is not allowed: 2 values, as many as in "
+        "/warp/absorption");
   file["wavelengths_nm"] = {500, 500};
   CHECK(refusal(file) ==
         "/wavelengths_nm/1: 500 is not allowed: a finite number above 500 (strictly ascending)");
-  CHECK(refusal(changed("/wavelengths_nm", {450, 550, 650})) == "");
+  CHECK(refusal(changed("/wavelengths_nm", {450, 550, 650})) == kAccepted);
 }
 
 TEST_CASE("files that cannot be read are refused by name") {
@@ -483,13 +496,16 @@ TEST_CASE("mutated files are read or refused in one line, and nothing else") {
     for (std::uint64_t change = 0; change < changes && !text.empty(); ++change) {
       const std::size_t at = below(bits, text.size());
       const std::size_t length = std::min<std::size_t>(1 + below(bits, 30), text.size() - at);
-      switch (below(bits, 7)) {
+      switch (below(bits, 10)) {
         case 0: text[at] = static_cast<char>(below(bits, 256)); break;
         case 1: text.erase(at, length); break;
         case 2: text.insert(at, text.substr(at, length)); break;
         case 3: text.insert(at, tokens[below(bits, tokens.size())]); break;
         case 4: text.insert(below(bits, text.size()), text.substr(at, length)); break;
-        case 5: {  // a digit: most such files stay valid
+        case 5:
+        case 6:
+        case 7:
+        case 8: {  // a digit: most such files stay valid
           const std::size_t digit = text.find_first_of("0123456789", at);
           if (digit != std::string::npos) text[digit] = static_cast<char>('0' + below(bits, 10));
           break;

@@ -8,8 +8,12 @@ namespace clothbrdf::test {
 
 using nlohmann::json;
 
+namespace {
+const std::string kNone;
+}
+
 TEST_CASE("a value that follows the schema has no violation") {
-  CHECK(find_violation(R"({"type": "number", "minimum": 0})"_json, 1.5) == "");
+  CHECK(find_violation(R"({"type": "number", "minimum": 0})"_json, 1.5) == kNone);
 }
 
 TEST_CASE("what is allowed is told for every kind of bound") {
@@ -39,11 +43,12 @@ TEST_CASE("of alternatives the one of the value's type is meant") {
     "definitions": {
       "angle": {"type": "number", "minimum": 0, "maximum": 90},
       "span": {"oneOf": [{"$ref": "#/definitions/angle"},
-                         {"type": "array", "items": {"$ref": "#/definitions/angle"}, "minItems": 2, "maxItems": 2}]}
+                         {"type": "array", "items": {"$ref": "#/definitions/angle"},
+                          "minItems": 2, "maxItems": 2}]}
     },
     "type": "object",
     "additionalProperties": {"$ref": "#/definitions/span"}})"_json;
-  CHECK(find_violation(schema, R"({"a": 90, "b": [0, 90]})"_json) == "");
+  CHECK(find_violation(schema, R"({"a": 90, "b": [0, 90]})"_json) == kNone);
   CHECK(find_violation(schema, R"({"a": 91})"_json) ==
         "/a: 91 is not allowed: a number from 0 to 90");
   CHECK(find_violation(schema, R"({"a": [0, 91]})"_json) ==
@@ -57,10 +62,19 @@ TEST_CASE("of alternatives the one of the value's type is meant") {
 TEST_CASE("of parts that all hold the one that fails is told") {
   const json schema = R"({"allOf": [{"type": "object"}, {"type": "object", "required": ["x"],
     "properties": {"x": {"type": "integer", "minimum": 1, "maximum": 2}}}]})"_json;
-  CHECK(find_violation(schema, R"({"x": 1, "y": 0})"_json) == "");
+  CHECK(find_violation(schema, R"({"x": 1, "y": 0})"_json) == kNone);
   CHECK(find_violation(schema, R"({})"_json) == "/x: missing, needed is an integer from 1 to 2");
   CHECK(find_violation(schema, R"({"x": 3})"_json) ==
         "/x: 3 is not allowed: an integer from 1 to 2");
+}
+
+TEST_CASE("each place of a tuple has its own schema") {
+  const json schema =
+      R"({"type": "array",
+          "items": [{"type": "number"}, {"type": "string"}, {"type": "null"}]})"_json;
+  CHECK(find_violation(schema, R"([1, "a", null, 5])"_json) == kNone);
+  CHECK(find_violation(schema, R"([1, 2])"_json) == "/1: 2 is not allowed: a string");
+  CHECK(find_violation(schema, R"([1, "a", 3])"_json) == "/2: 3 is not allowed: null");
 }
 
 TEST_CASE("long values are shortened, at a whole character") {

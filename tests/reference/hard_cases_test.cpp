@@ -10,11 +10,13 @@ namespace clothbrdf::test {
 namespace {
 
 constexpr double kPromise = 1e-13;
-/// Above this exponent exp itself costs more than the rest: its argument's rounding is magnified X times.
+/// Above this exponent exp itself costs more than the rest: its argument's rounding is magnified X
+/// times.
 constexpr double kLargestExponent = 300;
 constexpr double kPerExponent = 4e-16;
 
-/// Model.md, section 9. X is the exponent of the yarn's strongest path, k = 1, which the deeper ones cannot outweigh.
+/// Model.md, section 9. X is the exponent of the yarn's strongest path, k = 1, which the deeper
+/// ones cannot outweigh.
 double promise(std::size_t component, const Material& material, std::size_t channel,
                const ReferenceValues& exact) {
   if (component == 0) return kPromise;
@@ -44,7 +46,8 @@ MaterialRanges hard_ranges() {
   return ranges;
 }
 
-TEST_CASE("hard materials keep the promise: axes from 1e-3, index from 1 + 1e-12, absorption to 40") {
+TEST_CASE(
+    "hard materials keep the promise: axes from 1e-3, index from 1 + 1e-12, absorption to 40") {
   const std::uint64_t seed = seed_from_environment() + 3;
   RandomInputs draw(seed);
   WorstCases worst;
@@ -65,28 +68,29 @@ TEST_CASE("hard materials keep the promise: axes from 1e-3, index from 1 + 1e-12
   CHECK(beyond >= 4);
 }
 
-TEST_CASE("an axis of 1e-6 costs up to 1e-16 over the axis, and only on the lobe's crest") {
-  // Across the crest the half vector's coordinate is known to 1e-16, and the axis magnifies that. Elsewhere the
-  // promise holds. Measured: 2e-10 on the crest.
-  constexpr double kOnTheCrest = 1e-9;
+TEST_CASE("an axis of 1e-6 costs 4e-16 over the half vector's lean along it, or over the axis") {
+  // The half vector's coordinate along the yarn is known to about 1e-16 where it leans far across
+  // it, and the axis magnifies that: beside the lobe's crest no double model can do better.
+  // Measured: 3e-14 for random pairs, 5e-11 on the crest.
+  constexpr double kAxis = 1e-6;
   const std::uint64_t seed = seed_from_environment() + 4;
   RandomInputs draw(seed);
   WorstCases anywhere;
   WorstCases crest;
   MaterialRanges ranges;
   ranges.most_layers = 4;
-  const auto promised = [](std::size_t, const Material&, std::size_t, const ReferenceValues&) {
-    return kPromise;
-  };
-  const auto on_crest = [](std::size_t, const Material&, std::size_t, const ReferenceValues&) {
-    return kOnTheCrest;
+  DirectionPair pair;
+  const auto promised = [&](std::size_t, const Material& material, std::size_t,
+                            const ReferenceValues&) {
+    const PairGeometry<double> g = pair_geometry<double>(pair, material.rotation_deg);
+    const double lean = std::fmin(std::fabs(g.h_weft), std::fabs(g.h_warp));
+    return kPromise + 4e-16 / std::fmax(lean, kAxis);
   };
   for (int n = 0; n < 60; ++n) {
     Material material = draw.material(ranges);
-    material.warp.lobe_axes[0] = 1e-6;
-    material.weft.lobe_axes[0] = 1e-6;
-    DirectionPair pair = {draw.uniform(0, 89.9), draw.azimuth(), draw.uniform(0, 89.9),
-                          draw.azimuth()};
+    material.warp.lobe_axes[0] = kAxis;
+    material.weft.lobe_axes[0] = kAxis;
+    pair = {draw.uniform(0, 89.9), draw.azimuth(), draw.uniform(0, 89.9), draw.azimuth()};
     compare_with_reference(material, pair, reference_values(material, pair), promised, anywhere);
     // The weave turned so that the half vector leans across the warp, a few axes off its crest.
     pair.phi_i = draw.uniform(-180, 180);
@@ -94,7 +98,7 @@ TEST_CASE("an axis of 1e-6 costs up to 1e-16 over the axis, and only on the lobe
     const PairGeometry<double> g = pair_geometry<double>(pair, 0.0);
     material.rotation_deg =
         std::atan2(g.h_warp, g.h_weft) * 180 / pi<double>() + draw.log_uniform(1e-5, 1e-3);
-    compare_with_reference(material, pair, reference_values(material, pair), on_crest, crest);
+    compare_with_reference(material, pair, reference_values(material, pair), promised, crest);
   }
   anywhere.print_to_cout("axes of 1e-6, seed " + std::to_string(seed));
   crest.print_to_cout("axes of 1e-6, on the crest");
@@ -108,8 +112,8 @@ TEST_CASE("a cloth of index 1 reflects nothing but diffuse light") {
     Material material = draw.material(hard_ranges());
     material.warp.refractive_index = material.weft.refractive_index = 1;
     const DirectionPair pair = draw.pair();
-    const Components f = ClothModel<double>(material).evaluate(
-        pair_geometry<double>(pair, material.rotation_deg));
+    const Components f =
+        ClothModel<double>(material).evaluate(pair_geometry<double>(pair, material.rotation_deg));
     for (std::size_t c = 0; c < 3; ++c) {
       CHECK(f.specular[c] == 0);
       CHECK(f.internal[c] == 0);

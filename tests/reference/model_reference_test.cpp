@@ -18,14 +18,14 @@ double promise(std::size_t, const Material&, std::size_t, const ReferenceValues&
 
 /// How often the draws met what needs care.
 struct Coverage {
-  int near_opposite = 0;     ///< azimuths more than 90 degrees apart
+  int near_opposite = 0;  ///< azimuths more than 90 degrees apart
   int not_opposite = 0;
   int no_scatter = 0;        ///< scatter exactly 0
   int slow_scatter = 0;      ///< so slow that the last lobe is the 1025th event's
   int mostly_reflected = 0;  ///< Fresnel's r >= 1/2
   int special_azimuth = 0;   ///< a multiple of 30 degrees apart, exactly
   int exactly_opposite = 0;
-  int limited = 0;           ///< scatter_limit given
+  int limited = 0;  ///< scatter_limit given
 
   void count(const Material& material, const DirectionPair& pair, const ReferenceValues& exact) {
     const double apart = std::fabs(std::remainder(pair.phi_o - pair.phi_i, 360.0));

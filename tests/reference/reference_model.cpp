@@ -10,10 +10,12 @@ namespace {
 constexpr int kMostEvents = 1025;
 /// Light inside, as a share of what came out, that no later lobe can make count.
 const Real kNegligibleLight("1e-60");
-/// Directionality q that no axis notices: axes off by 1e-39 of themselves at worst, where they are 1e-6.
+/// Directionality q that no axis notices: axes off by 1e-39 of themselves at worst, where they are
+/// 1e-6.
 const Wide kNegligibleDirectionality("1e-45");
 
-/// Height of the lobe of the given axes towards the half vector at hand; its yarn is 0 for the warp, 1 for the weft.
+/// Height of the lobe of the given axes towards the half vector at hand; its yarn is 0 for the
+/// warp, 1 for the weft.
 using Height = std::function<Wide(int yarn, const Wide& along, const Wide& across)>;
 
 Wide radians(const Wide& degrees) { return degrees * boost::math::constants::pi<Wide>() / 180; }
@@ -32,8 +34,8 @@ Vector direction(double theta_deg, const Wide& phi_deg) {
 
 Wide dot(const Vector& a, const Vector& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
-/// Newton's steps on 1 / sqrt from double to 50 digits: three times as fast as the library's, which goes bit by bit. The
-/// arguments here lie between 1e-12 and 2.
+/// Newton's steps on 1 / sqrt from double to 50 digits: three times as fast as the library's, which
+/// goes bit by bit. The arguments here lie between 1e-12 and 2.
 Real newton_sqrt(const Real& x) {
   Real inverse = 1 / std::sqrt(static_cast<double>(x));
   for (int step = 0; step < 2; ++step) inverse += inverse * (1 - x * inverse * inverse) / 2;
@@ -41,8 +43,9 @@ Real newton_sqrt(const Real& x) {
   return root + inverse * (x - root * root) / 2;
 }
 
-/// Carlson's R_D by his duplication theorem alone: his series' leading terms end it when the arguments agree to eight
-/// digits, the first one left out being of the sixth order and below 1e-48. Held to Boost's ellint_rd by a test.
+/// Carlson's R_D by his duplication theorem alone: his series' leading terms end it when the
+/// arguments agree to eight digits, the first one left out being of the sixth order and below
+/// 1e-48. Held to Boost's ellint_rd by a test.
 Real duplicated_rd(Real x, Real y, Real z) {
   Real sum = 0;
   Real scale = 1;
@@ -167,10 +170,9 @@ ReferenceValues assemble(const Material& material, const Wide& h_n, const Wide& 
   for (std::size_t y = 0; y < 2; ++y) {
     const ReferenceInterface interface = reference_fresnel(x, yarns[y]->refractive_index);
     values.fresnel_reflection[y] = Real(interface.reflected);
-    tables[y] =
-        yarn_sums(*yarns[y], interface, [&](const Wide& along, const Wide& across) {
-          return height(static_cast<int>(y), along, across);
-        });
+    tables[y] = yarn_sums(*yarns[y], interface, [&](const Wide& along, const Wide& across) {
+      return height(static_cast<int>(y), along, across);
+    });
   }
   for (std::size_t reflectance = 0; reflectance < 2; ++reflectance) {
     const bool microfacet = reflectance == static_cast<std::size_t>(Reflectance::kMicrofacet);
@@ -187,8 +189,8 @@ ReferenceValues assemble(const Material& material, const Wide& h_n, const Wide& 
           const YarnSums& sums = tables[y][reflectance][paths];
           specular += shares[y] * sums.specular;
           internal += shares[y] * sums.internal[channel];
-          diffuse += shares[y] *
-                     exp(-Real(yarns[y]->absorption[channel]) * Real(material.diffuse_path));
+          diffuse +=
+              shares[y] * exp(-Real(yarns[y]->absorption[channel]) * Real(material.diffuse_path));
         }
         f.specular.push_back(Real(material.weights.specular) * specular * factor);
         f.internal.push_back(Real(material.weights.internal) * internal * factor);
@@ -229,7 +231,8 @@ Real reference_passage(const Real& absorption, const Real& cos_theta_t) {
 }
 
 Real reference_pile_reflectance(int layers, const Real& reflected, const Real& passage) {
-  // Add one surface after the other on top of the pile below it; yarn and air alternate, yarn under the topmost.
+  // Add one surface after the other on top of the pile below it; yarn and air alternate, yarn under
+  // the topmost.
   const Real transmitted = 1 - reflected;
   Real below = 0;
   for (int surface = 2 * layers; surface >= 1; --surface) {
@@ -244,8 +247,8 @@ std::vector<Real> reference_walk(int layers, const Real& reflected, const Real& 
   const Real t = 1 - r;
   if (layers == 0) return {Real(0), r};
   const std::size_t surfaces = static_cast<std::size_t>(2 * layers);
-  // Light about to meet surface 1..2N, on its way down and on its way up. Between surfaces i and i + 1 lies yarn where
-  // i is odd.
+  // Light about to meet surface 1..2N, on its way down and on its way up. Between surfaces i and i
+  // + 1 lies yarn where i is odd.
   std::vector<Real> down(surfaces + 2, Real(0));
   std::vector<Real> up(surfaces + 2, Real(0));
   down[1] = 1;
@@ -304,7 +307,8 @@ ReferenceValues reference_values(const Material& material, const DirectionPair& 
 
 ReferenceValues reference_azimuthal_mean(const Material& material, double theta_h, double theta_d,
                                          double phi_d) {
-  // The light in the frame whose pole is the half vector, then the half vector is tilted to where it is.
+  // The light in the frame whose pole is the half vector, then the half vector is tilted to where
+  // it is.
   const Vector light = direction(theta_d, phi_d);
   const Wide sin_h = sin(radians(theta_h));
   const Wide cos_h = cos(radians(theta_h));

@@ -9,8 +9,9 @@
 
 namespace clothbrdf::test {
 
-// The model a second time, written from the physics in 50 digits, with none of the forms that make the first one exact
-// in double. Shares the plain data of a material and of a direction pair with it, nothing else.
+// The model a second time, written from the physics in 50 digits, with none of the forms that make
+// the first one exact in double. Shares the plain data of a material and of a direction pair with
+// it, nothing else.
 
 using Real = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<50>,
                                            boost::multiprecision::et_off>;
@@ -28,7 +29,8 @@ struct ReferenceComponents {
   ReferenceChannels diffuse;
 };
 
-/// f_r of one material and pair under every convention and path set, whatever the material's own are.
+/// f_r of one material and pair under every convention and path set, whatever the material's own
+/// are.
 struct ReferenceValues {
   std::array<std::array<ReferenceComponents, 2>, 2> by_convention;  ///< [reflectance][paths]
   Real cos_theta_d;
@@ -42,9 +44,9 @@ struct ReferenceValues {
 /// At a pair of directions in degrees, both above the horizon.
 ReferenceValues reference_values(const Material& material, const DirectionPair& pair);
 
-/// The mean over the azimuth of the half vector, at half/difference angles in degrees: theta_h, theta_d and phi_d, the
-/// azimuth of the light around the half vector (0 where it leans away from the normal). Both directions above the
-/// horizon.
+/// The mean over the azimuth of the half vector, at half/difference angles in degrees: theta_h,
+/// theta_d and phi_d, the azimuth of the light around the half vector (0 where it leans away from
+/// the normal). Both directions above the horizon.
 ReferenceValues reference_azimuthal_mean(const Material& material, double theta_h, double theta_d,
                                          double phi_d);
 
@@ -70,9 +72,9 @@ Real reference_passage(const Real& absorption, const Real& cos_theta_t);
 /// All the light that comes out of a pile of layers, the surface reflection included.
 Real reference_pile_reflectance(int layers, const Real& reflected, const Real& passage);
 
-/// Light by the number of its events: weights[E] leaves after E events, weights[0] = 0, weights[1] the surface
-/// reflection. The last one, E = 1025, is all that is left then, too. Shorter where nothing more comes out: below 1e-60
-/// of what did.
+/// Light by the number of its events: weights[E] leaves after E events, weights[0] = 0, weights[1]
+/// the surface reflection. The last one, E = 1025, is all that is left then, too. Shorter where
+/// nothing more comes out: below 1e-60 of what did.
 std::vector<Real> reference_walk(int layers, const Real& reflected, const Real& passage);
 
 }  // namespace clothbrdf::test

@@ -1,4 +1,5 @@
-// The reference is plain, not obviously right: its closed forms are held to sums and integrals that are.
+// The reference is plain, not obviously right: its closed forms are held to sums and integrals that
+// are.
 
 #include <boost/math/constants/constants.hpp>
 #include <boost/math/quadrature/tanh_sinh.hpp>
@@ -100,8 +101,7 @@ TEST_CASE("the reference's azimuthal mean is the mean of its lobes over the azim
     const ReferenceComponents& f = of_one_yarn.of(Reflectance::kPaper, Paths::kAll);
     const Wide theta_d = Wide(20) * boost::math::constants::pi<Wide>() / 180;
     const Wide phi_d = Wide(70) * boost::math::constants::pi<Wide>() / 180;
-    const Wide cos_theta_i =
-        cos(half) * cos(theta_d) - sin(half) * sin(theta_d) * cos(phi_d);
+    const Wide cos_theta_i = cos(half) * cos(theta_d) - sin(half) * sin(theta_d) * cos(phi_d);
     const Real expected = Real(material.weights.specular) * of_one_yarn.fresnel_reflection[0] *
                           Real(sum / 512 / cos_theta_i);
     CHECK(relative(f.specular[0], expected) < kNearlyAll);

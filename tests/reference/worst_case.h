@@ -63,8 +63,9 @@ inline double relative_error(double value, const Real& exact) {
   return static_cast<double>(abs(Real(value) / exact - 1));
 }
 
-/// Compares the double model with the reference for both conventions and both path sets. `promise(component,
-/// material, channel, values)` is the relative error that is allowed; errors are recorded as multiples of it.
+/// Compares the double model with the reference for both conventions and both path sets.
+/// `promise(component, material, channel, values)` is the relative error that is allowed; errors
+/// are recorded as multiples of it.
 template <class Promise>
 void compare_with_reference(Material material, const DirectionPair& pair,
                             const ReferenceValues& exact, const Promise& promise,
@@ -73,8 +74,8 @@ void compare_with_reference(Material material, const DirectionPair& pair,
     for (const Paths paths : {Paths::kAll, Paths::kSingle}) {
       material.reflectance = reflectance;
       material.paths = paths;
-      const Components f = ClothModel<double>(material).evaluate(
-          pair_geometry<double>(pair, material.rotation_deg));
+      const Components f =
+          ClothModel<double>(material).evaluate(pair_geometry<double>(pair, material.rotation_deg));
       const ReferenceComponents& e = exact.of(reflectance, paths);
       const std::array<const std::vector<double>*, 3> values = {&f.specular, &f.internal,
                                                                 &f.diffuse};

@@ -36,8 +36,8 @@ struct MaterialRanges {
   int most_layers = 8;
 };
 
-/// Draws that are the same on every platform and standard library: the engine's output is fixed by the standard, the
-/// mapping is our own.
+/// Draws that are the same on every platform and standard library: the engine's output is fixed by
+/// the standard, the mapping is our own.
 class RandomInputs {
  public:
   explicit RandomInputs(std::uint64_t seed) : engine_(seed) {}
@@ -83,8 +83,8 @@ class RandomInputs {
     return material;
   }
 
-  /// theta at most 89.9 degrees; a share of special azimuths, of grazing directions and of pairs close to the mirror
-  /// direction, where narrow lobes are not small.
+  /// theta at most 89.9 degrees; a share of special azimuths, of grazing directions and of pairs
+  /// close to the mirror direction, where narrow lobes are not small.
   DirectionPair pair() {
     DirectionPair pair{theta(), azimuth(), theta(), azimuth()};
     if (chance(0.25)) {

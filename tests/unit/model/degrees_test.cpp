@@ -15,16 +15,15 @@ namespace {
 
 using Real = boost::multiprecision::cpp_bin_float_50;
 
-// "About one unit in the last place": half from the reduction to radians, half from the library's sine.
+// "About one unit in the last place": half from the reduction to radians, half from the library's
+// sine.
 constexpr double kOneUnit = 2.3e-16;
 
 double relative(double value, const Real& exact) {
   return static_cast<double>(abs(Real(Real(value) / exact - 1)));
 }
 
-Real radians(double degrees) {
-  return Real(degrees) * boost::math::constants::pi<Real>() / 180;
-}
+Real radians(double degrees) { return Real(degrees) * boost::math::constants::pi<Real>() / 180; }
 
 TEST_CASE("sincosd is exact at multiples of 90 degrees") {
   const double sines[] = {0, 1, 0, -1};
@@ -47,8 +46,8 @@ TEST_CASE("sincosd keeps every digit beside multiples of 90 degrees and anywhere
     if (std::remainder(degrees, 90.0) == 0) continue;
     close += std::fabs(std::remainder(degrees, 90.0)) < 1e-6;
     const SinCos<double> s = sincosd(degrees);
-    worst = std::max({worst, relative(s.sin, sin(radians(degrees))),
-                      relative(s.cos, cos(radians(degrees)))});
+    worst = std::max(
+        {worst, relative(s.sin, sin(radians(degrees))), relative(s.cos, cos(radians(degrees)))});
   }
   INFO("worst relative error " << worst);
   CHECK(worst <= 2 * kOneUnit);

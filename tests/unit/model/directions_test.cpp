@@ -40,9 +40,12 @@ PairGeometry<Real> plain(const DirectionPair& pair, double rotation_deg) {
           o[2]};
 }
 
-double error(double value, const Real& exact) { return static_cast<double>(abs(Real(value - exact))); }
+double error(double value, const Real& exact) {
+  return static_cast<double>(abs(Real(value - exact)));
+}
 
-TEST_CASE("the half vector of a pair in degrees has all its digits, near the mirror direction too") {
+TEST_CASE(
+    "the half vector of a pair in degrees has all its digits, near the mirror direction too") {
   RandomInputs draw(seed_from_environment());
   double worst_cosine = 0;
   double worst_tilt = 0;  // error of (h_weft, h_warp), relative to its length
@@ -54,7 +57,8 @@ TEST_CASE("the half vector of a pair in degrees has all its digits, near the mir
     const PairGeometry<Real> exact = plain(pair, rotation);
     for (const auto& [value, truth] :
          {std::pair(g.h_n, exact.h_n), std::pair(g.cos_theta_d, exact.cos_theta_d),
-          std::pair(g.cos_theta_i, exact.cos_theta_i), std::pair(g.cos_theta_o, exact.cos_theta_o)}) {
+          std::pair(g.cos_theta_i, exact.cos_theta_i),
+          std::pair(g.cos_theta_o, exact.cos_theta_o)}) {
       worst_cosine = std::max(worst_cosine, error(value, truth) / static_cast<double>(truth));
     }
     const Real tilt = sqrt(Real(exact.h_weft * exact.h_weft + exact.h_warp * exact.h_warp));
@@ -93,9 +97,8 @@ TEST_CASE("vectors give the geometry that degrees give") {
     pair.phi_o = draw.uniform(-360, 360);
     const double rotation = draw.uniform(-360, 360);
     const PairGeometry<double> degrees = pair_geometry<double>(pair, rotation);
-    const PairGeometry<double> vectors =
-        pair_geometry<double>(unit_vector(pair.theta_i, pair.phi_i),
-                              unit_vector(pair.theta_o, pair.phi_o), rotation);
+    const PairGeometry<double> vectors = pair_geometry<double>(
+        unit_vector(pair.theta_i, pair.phi_i), unit_vector(pair.theta_o, pair.phi_o), rotation);
     // A sum of unit vectors of length 2 x carries the roundings of numbers of size 1.
     const double allowed = 2 * kFewRoundings / degrees.cos_theta_d;
     CHECK(std::fabs(degrees.h_weft - vectors.h_weft) <= allowed);
@@ -139,7 +142,8 @@ TEST_CASE("incidence cosines of half and difference angles are those of the pair
     const double phi_d = draw.uniform(0, 360);
     const IncidenceCosines<double> c =
         incidence_cosines(sincosd(theta_h), sincosd(theta_d), sincosd(phi_d).cos);
-    // The light in the half vector's frame, z towards it and x away from the normal; the normal is at -theta_h in x-z.
+    // The light in the half vector's frame, z towards it and x away from the normal; the normal is
+    // at -theta_h in x-z.
     const Vector3<double> light = unit_vector(theta_d, phi_d);
     const Vector3<double> eye = {-light[0], -light[1], light[2]};
     const Vector3<double> normal = unit_vector(theta_h, 180.0);

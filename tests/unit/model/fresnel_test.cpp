@@ -37,7 +37,8 @@ TEST_CASE("r, t and the cosine inside keep their digits near index 1 and at graz
     const double x = k % 2 == 0 ? draw.log_uniform(1e-9, 1) : draw.uniform(0, 1);
     const Interface<double> i = fresnel(x, n);
     const Real r = textbook_reflectance(x, n);
-    // Where p is nearly 0 beside s (Brewster) and where index and cosine are both extreme, all must hold.
+    // Where p is nearly 0 beside s (Brewster) and where index and cosine are both extreme, all must
+    // hold.
     worst = std::max({worst, relative(i.reflected, r), relative(i.transmitted, Real(1 - r)),
                       relative(i.cos_theta_t, sqrt(Real(1 - (1 - Real(x) * x) / (Real(n) * n))))});
     CHECK(std::fabs(i.reflected + i.transmitted - 1) <= 0x1p-52);

@@ -20,7 +20,8 @@ const Real kQuadrature("1e-25");
 
 Real relative(const Real& value, const Real& exact) { return abs(Real(value / exact - 1)); }
 
-TEST_CASE("the lobe's height is the distance to the far side of an ellipsoid that touches the surface") {
+TEST_CASE(
+    "the lobe's height is the distance to the far side of an ellipsoid that touches the surface") {
   RandomInputs draw(seed_from_environment());
   for (int n = 0; n < 500; ++n) {
     const LobeAxes<double> axes = {draw.log_uniform(0.03, 1), draw.log_uniform(0.03, 1)};

@@ -1,0 +1,154 @@
+#include "tabulate/cubature.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace clothbrdf {
+namespace {
+
+constexpr std::size_t kMostParts = 200000;
+
+struct Part {
+  Box4 box;
+  std::vector<double> integral;
+  std::vector<double> error;
+  std::size_t roughest = 0;  // variable to halve
+  double worst = 0;          // largest error, relative to the whole
+};
+
+class GenzMalik {
+ public:
+  GenzMalik(const Integrand4& integrand, std::size_t count)
+      : integrand_(integrand), count_(count) {}
+
+  Part apply(const Box4& box) {
+    static const double kNear = std::sqrt(9.0 / 70);
+    static const double kFar = std::sqrt(9.0 / 10);
+    static const double kCorner = std::sqrt(9.0 / 19);
+    constexpr double kRatio = 1.0 / 7;  // (near / far)^2
+    double volume = 1;
+    for (std::size_t i = 0; i < 4; ++i) {
+      centre_[i] = (box.low[i] + box.high[i]) / 2;
+      half_[i] = (box.high[i] - box.low[i]) / 2;
+      volume *= 2 * half_[i];
+    }
+    Part part{box, std::vector<double>(count_), std::vector<double>(count_)};
+    const std::vector<double> centre = sum_at({});
+    std::vector<double> near(count_);
+    std::vector<double> far(count_);
+    double roughest = -1;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const std::vector<double> n = sum_at({{i, kNear}});
+      const std::vector<double> f = sum_at({{i, kFar}});
+      double difference = 0;
+      for (std::size_t c = 0; c < count_; ++c) {
+        difference += std::abs(n[c] - 2 * centre[c] - kRatio * (f[c] - 2 * centre[c]));
+        near[c] += n[c];
+        far[c] += f[c];
+      }
+      if (difference > roughest) {
+        roughest = difference;
+        part.roughest = i;
+      }
+    }
+    std::vector<double> edges(count_);
+    for (std::size_t i = 0; i < 4; ++i) {
+      for (std::size_t j = i + 1; j < 4; ++j) {
+        const std::vector<double> e = sum_at({{i, kFar}, {j, kFar}});
+        for (std::size_t c = 0; c < count_; ++c) edges[c] += e[c];
+      }
+    }
+    const std::vector<double> corners =
+        sum_at({{0, kCorner}, {1, kCorner}, {2, kCorner}, {3, kCorner}});
+    for (std::size_t c = 0; c < count_; ++c) {
+      // The weights for four variables.
+      part.integral[c] = volume / 19683 *
+                         (-17256 * centre[c] + 2940 * near[c] + 220 * far[c] + 200 * edges[c] +
+                          6859.0 / 16 * corners[c]);
+      const double weak =
+          volume / 1458 * (-4542 * centre[c] + 735 * near[c] - 135 * far[c] + 50 * edges[c]);
+      part.error[c] = std::abs(part.integral[c] - weak);
+    }
+    return part;
+  }
+
+ private:
+  struct Offset {
+    std::size_t variable;
+    double steps;  // of half the box's width
+  };
+
+  // Sum over all signs of the offsets.
+  std::vector<double> sum_at(const std::vector<Offset>& offsets) {
+    std::vector<double> sum(count_);
+    std::vector<double> values(count_);
+    for (std::size_t signs = 0; signs < (std::size_t{1} << offsets.size()); ++signs) {
+      std::array<double, 4> at = centre_;
+      for (std::size_t k = 0; k < offsets.size(); ++k) {
+        const double step = offsets[k].steps * half_[offsets[k].variable];
+        at[offsets[k].variable] += (signs >> k & 1U) != 0 ? -step : step;
+      }
+      integrand_(at, values);
+      for (std::size_t c = 0; c < count_; ++c) sum[c] += values[c];
+    }
+    return sum;
+  }
+
+  const Integrand4& integrand_;
+  std::size_t count_;
+  std::array<double, 4> centre_{};
+  std::array<double, 4> half_{};
+};
+
+std::vector<double> total(const std::vector<Part>& parts, std::vector<double> Part::*what,
+                          std::size_t count) {
+  std::vector<double> sum(count);
+  for (const Part& part : parts) {
+    for (std::size_t c = 0; c < count; ++c) sum[c] += (part.*what)[c];
+  }
+  return sum;
+}
+
+}  // namespace
+
+std::vector<double> integrate4(const Integrand4& integrand, const Box4& box, std::size_t count,
+                               double tolerance) {
+  GenzMalik rule(integrand, count);
+  std::vector<Part> parts = {rule.apply(box)};
+  std::vector<double> whole = parts[0].integral;
+  std::vector<double> error = parts[0].error;
+  const auto rate = [&](Part& part) {
+    part.worst = 0;
+    for (std::size_t c = 0; c < count; ++c) {
+      if (part.error[c] > 0) part.worst = std::max(part.worst, part.error[c] / std::abs(whole[c]));
+    }
+  };
+  const auto by_worst = [](const Part& a, const Part& b) { return a.worst < b.worst; };
+  const auto done = [&] {
+    for (std::size_t c = 0; c < count; ++c) {
+      if (error[c] > tolerance * std::abs(whole[c])) return false;
+    }
+    return true;
+  };
+  while (!done() && parts.size() < kMostParts) {
+    std::pop_heap(parts.begin(), parts.end(), by_worst);
+    const Part worst = std::move(parts.back());
+    parts.pop_back();
+    for (const bool upper : {false, true}) {
+      Box4 half = worst.box;
+      const std::size_t v = worst.roughest;
+      (upper ? half.low : half.high)[v] = (worst.box.low[v] + worst.box.high[v]) / 2;
+      Part part = rule.apply(half);
+      for (std::size_t c = 0; c < count; ++c) {
+        whole[c] += part.integral[c] - (upper ? 0 : worst.integral[c]);
+        error[c] += part.error[c] - (upper ? 0 : worst.error[c]);
+      }
+      rate(part);
+      parts.push_back(std::move(part));
+      std::push_heap(parts.begin(), parts.end(), by_worst);
+    }
+  }
+  return total(parts, &Part::integral, count);
+}
+
+}  // namespace clothbrdf

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <array>
+#include <functional>
+#include <span>
+#include <vector>
+
+namespace clothbrdf {
+
+/// A box of four variables.
+struct Box4 {
+  std::array<double, 4> low;
+  std::array<double, 4> high;
+};
+
+/// Writes the values of a vector of functions at a point.
+using Integrand4 = std::function<void(const std::array<double, 4>& at, std::span<double> values)>;
+
+/// Integrals of `count` positive functions over a box, each to a relative tolerance: adaptive
+/// cubature that halves the worst part along its roughest variable, with the rule of degree 7 and
+/// its companion of degree 5 by Genz and Malik (1980).
+std::vector<double> integrate4(const Integrand4& integrand, const Box4& box, std::size_t count,
+                               double tolerance);
+
+}  // namespace clothbrdf

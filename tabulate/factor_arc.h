@@ -1,0 +1,38 @@
+#pragma once
+
+namespace clothbrdf {
+
+/// The microfacet directional factor along phi_d at fixed theta_h and theta_d: its integral is
+/// closed, and so is the part of the circle above the horizon. With A = cos theta_h cos theta_d, B
+/// = sin theta_h sin theta_d and u = |cos phi_d|, the incidence cosines are A - B u and A + B u; u
+/// beyond A / B is below the horizon, and the factor is shadowed, h_n / (2 x (A + B u)), where A -
+/// B u < x / (2 h_n), else 1 / (4 (A - B u)(A + B u)).
+class FactorArc {
+ public:
+  /// Radians, both in (0, pi/2).
+  FactorArc(double theta_h, double theta_d);
+
+  /// Integral of the factor and length of the arc above the horizon, from phi_d = pi/2 towards 0
+  /// (chi > 0) or pi (chi < 0) over an angle |chi| <= pi/2. Odd in chi.
+  struct Integral {
+    double factor;
+    double length;
+  };
+  Integral from_right_angle(double chi) const;
+
+ private:
+  double unshadowed(double chi) const;       // integral of 1 / (4 (A^2 - B^2 sin^2)) from 0 to chi
+  double over_far_cosine(double phi) const;  // integral of 1 / (A + B cos) from 0 to phi
+
+  double cos_sum_;         // A - B
+  double cos_difference_;  // A + B
+  double a_;
+  double k_;            // sqrt |A^2 - B^2|
+  double shadow_;       // h_n / (2 x)
+  double chi_horizon_;  // the arc above the horizon ends here
+  double chi_shadow_;   // the factor is shadowed beyond
+  double to_shadow_;    // unshadowed(chi_shadow_)
+  double phi_shadow_;   // over_far_cosine where shadow begins
+};
+
+}  // namespace clothbrdf
