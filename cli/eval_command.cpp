@@ -128,7 +128,8 @@ void add_eval_command(CLI::App& program) {
       "comment line; - is standard input, the default");
   command->add_option("--effects", options->effects,
                       "only these components, joined by ',': specular, internal, diffuse");
-  command->add_flag("--json")->description("the output is always JSON; accepted so that all commands take it");
+  command->add_flag("--json")->description(
+      "the output is always JSON; accepted so that all commands take it");
   command->callback([options] { eval(*options); });
 }
 

@@ -12,6 +12,7 @@
 #include "formats/format.h"
 #include "formats/material_json.h"
 #include "support/errors.h"
+#include "support/threads.h"
 #include "tabulate/model_producer.h"
 
 namespace clothbrdf {

@@ -16,8 +16,9 @@ Material read_material(const std::filesystem::path& path);
 /// The same from text; `name` stands for the file's name in errors.
 Material parse_material(std::string_view text, const std::string& name);
 
-/// The text of a material file: every key written, "$schema" first, numbers so that they read back to the same bits.
-/// A weft equal to the warp is left out.
+/// The text of a material file: "$schema" first, then every key that is set, numbers so that they
+/// read back to the same bits. A weft equal to the warp is left out. Throws std::invalid_argument for
+/// an invalid material.
 std::string material_to_json(const Material& material);
 
 }  // namespace clothbrdf

@@ -47,7 +47,7 @@ PairGeometry<T> pair_geometry(const BasicDirectionPair<T>& pair, const T& rotati
   const SinCos<T> i = sincosd(pair.theta_i);
   const SinCos<T> o = sincosd(pair.theta_o);
 
-  Rounded<T> delta = two_difference(pair.phi_o, pair.phi_i);
+  Rounded<T> delta = two_difference(reduce_turns(pair.phi_o), reduce_turns(pair.phi_i));
   delta.value = reduce_turns(delta.value);
   T h_x;
   T h_y;
@@ -71,7 +71,7 @@ PairGeometry<T> pair_geometry(const BasicDirectionPair<T>& pair, const T& rotati
   const T length = sqrt(h_x * h_x + h_y * h_y + h_z * h_z);
   if (!(length > T(0))) return {T(0), T(0), T(1), T(0), i.cos, o.cos};
 
-  Rounded<T> psi = two_difference(pair.phi_i, rotation_deg);
+  Rounded<T> psi = two_difference(reduce_turns(pair.phi_i), reduce_turns(rotation_deg));
   psi.value = reduce_turns(psi.value);
   const SinCos<T> turn = sincosd(psi);
   return {(h_x * turn.cos - h_y * turn.sin) / length,

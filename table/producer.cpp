@@ -1,11 +1,11 @@
 #include "table/producer.h"
 
-#include <tbb/global_control.h>
-#include <tbb/info.h>
 #include <tbb/parallel_pipeline.h>
 
 #include <algorithm>
 #include <vector>
+
+#include "support/threads.h"
 
 namespace clothbrdf {
 namespace {
@@ -24,8 +24,6 @@ void stream_rows(const Producer& producer, int threads, const RowSink& take) {
   const TableSpec& spec = producer.spec();
   const std::size_t rows = spec.row_count();
   const std::size_t rows_per_block = std::max<std::size_t>(1, kBlockValues / spec.row_values());
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
-                                  static_cast<std::size_t>(threads));
 
   // A ring of buffers: at most so many blocks are under way, and they are taken in order.
   const std::size_t tokens = static_cast<std::size_t>(threads) + 1;
@@ -49,12 +47,12 @@ void stream_rows(const Producer& producer, int threads, const RowSink& take) {
     return block;
   };
   const auto hand_over = [&](Block* block) { take(block->first_row, block->values); };
-  tbb::parallel_pipeline(
-      tokens, tbb::make_filter<void, Block*>(tbb::filter_mode::serial_in_order, next) &
-                  tbb::make_filter<Block*, Block*>(tbb::filter_mode::parallel, compute) &
-                  tbb::make_filter<Block*, void>(tbb::filter_mode::serial_in_order, hand_over));
+  with_threads(threads, [&] {
+    tbb::parallel_pipeline(
+        tokens, tbb::make_filter<void, Block*>(tbb::filter_mode::serial_in_order, next) &
+                    tbb::make_filter<Block*, Block*>(tbb::filter_mode::parallel, compute) &
+                    tbb::make_filter<Block*, void>(tbb::filter_mode::serial_in_order, hand_over));
+  });
 }
-
-int default_threads() { return tbb::info::default_concurrency(); }
 
 }  // namespace clothbrdf

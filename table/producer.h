@@ -32,7 +32,4 @@ using RowSink = std::function<void(std::size_t first_row, std::span<double> valu
 /// `take` throws ends the work.
 void stream_rows(const Producer& producer, int threads, const RowSink& take);
 
-/// Threads to use when the user does not say: one a processor.
-int default_threads();
-
 }  // namespace clothbrdf

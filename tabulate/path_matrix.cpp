@@ -1,10 +1,10 @@
 #include "tabulate/path_matrix.h"
 
 #include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 
+#include "support/threads.h"
 #include "tabulate/vectorise.h"
 
 namespace clothbrdf {
@@ -34,8 +34,7 @@ PathMatrix::PathMatrix(const ClothModel<double>& model, std::vector<double> cos_
       equal_yarns_(model.material().warp == model.material().weft) {
   for (std::size_t y = 0; y < distinct_yarns(); ++y) lobe_count_ += model.yarns()[y].lobes.size();
   weights_.resize(cos_theta_d.size() * model.channel_count() * lobe_count_);
-  tbb::task_arena arena(threads);
-  arena.execute([&] {
+  with_threads(threads, [&] {
     tbb::parallel_for(std::size_t{0}, cos_theta_d.size(),
                       [&](std::size_t k) { fill_weights(k, cos_theta_d[k]); });
   });

@@ -47,7 +47,7 @@ double albedo_on_grid(const ClothModel<double>& model, double theta_i_deg, doubl
 /// The midpoint rule is of second order here (the integrand has kinks, at G = 1 and at the horizon,
 /// no jumps): what the last halving of the step changed is three times the error that is left, and
 /// is taken as its bound.
-Albedo albedo(const ClothModel<double>& model, double theta_i_deg, double phi_i_deg, int n = 64) {
+Albedo albedo(const ClothModel<double>& model, double theta_i_deg, double phi_i_deg, int n = 96) {
   const double coarse = albedo_on_grid(model, theta_i_deg, phi_i_deg, n);
   const double fine = albedo_on_grid(model, theta_i_deg, phi_i_deg, 2 * n);
   return {fine, std::fabs(fine - coarse)};
@@ -70,15 +70,15 @@ Material clear_cloth(RandomInputs& draw, bool with_scatter) {
   return material;
 }
 
-// Absolute; asserted of every albedo here.
-constexpr double kQuadrature = 2e-3;
+// Absolute, of the last halving: a third of it, 1e-3, is left. Asserted of every albedo here.
+constexpr double kQuadrature = 3e-3;
 
 TEST_CASE("without scatter and diffuse light no cloth reflects more than it receives") {
   RandomInputs draw(seed_from_environment());
   double largest = 0;
   double largest_error = 0;
   int grazing = 0;
-  for (int n = 0; n < 80; ++n) {
+  for (int n = 0; n < 50; ++n) {
     const ClothModel<double> model(clear_cloth(draw, false));
     const double theta_i = n % 4 == 0 ? draw.uniform(80, 89) : draw.uniform(0, 80);
     grazing += theta_i >= 80;
@@ -90,8 +90,8 @@ TEST_CASE("without scatter and diffuse light no cloth reflects more than it rece
   std::cout << "largest directional albedo without scatter " << largest << ", quadrature error "
             << largest_error << '\n';
   CHECK(largest_error <= kQuadrature);
-  CHECK(largest > 0.9);  // some came close enough for a wrong factor to show
-  CHECK(grazing >= 20);
+  CHECK(largest > 0.85);  // some came close enough for a wrong factor to show
+  CHECK(grazing >= 13);
 }
 
 TEST_CASE("seen from straight above, the albedo is Stokes' reflectance averaged over the facets") {
@@ -143,6 +143,7 @@ TEST_CASE("the largest albedo with scatter is reported, and stays a modest numbe
     largest_material = material;
   };
   Material known = clear_cloth(draw, true);
+  known.paths = Paths::kAll;
   known.warp = {{0.03, 1}, {0}, 64, 1.5, 1, std::nullopt};
   for (const double phi_i : {0.0, 45.0, 90.0}) offer(known, 88, phi_i);
   for (int n = 0; n < 60; ++n) {

@@ -65,7 +65,7 @@ TEST_CASE(
   worst.print_to_cout("hard materials, seed " + std::to_string(seed));
   CHECK(worst.largest() <= 1);
   CHECK(nearly_one >= 10);
-  CHECK(beyond >= 4);
+  CHECK(beyond >= 1);
 }
 
 TEST_CASE("an axis of 1e-6 costs 4e-16 over the half vector's lean along it, or over the axis") {

@@ -230,16 +230,18 @@ Real reference_passage(const Real& absorption, const Real& cos_theta_t) {
   return cos_theta_t == 0 ? Real(0) : Real(exp(-absorption / cos_theta_t));
 }
 
-Real reference_pile_reflectance(int layers, const Real& reflected, const Real& passage) {
+Real reference_pile_inside(int layers, const Real& reflected, const Real& passage) {
   // Add one surface after the other on top of the pile below it; yarn and air alternate, yarn under
   // the topmost.
   const Real transmitted = 1 - reflected;
   Real below = 0;
+  Real through = 0;
   for (int surface = 2 * layers; surface >= 1; --surface) {
     if (surface % 2 == 1) below *= passage * passage;
-    below = reflected + transmitted * transmitted * below / (1 - reflected * below);
+    through = transmitted * transmitted * below / (1 - reflected * below);
+    below = reflected + through;
   }
-  return below;
+  return through;
 }
 
 std::vector<Real> reference_walk(int layers, const Real& reflected, const Real& passage) {
@@ -281,9 +283,7 @@ std::vector<Real> reference_walk(int layers, const Real& reflected, const Real& 
       if (inside <= kNegligibleLight * left_inside) return left;
     }
   }
-  Real rest = reference_pile_reflectance(layers, r, passage);
-  for (const Real& weight : left) rest -= weight;
-  left.push_back(rest);
+  left.push_back(reference_pile_inside(layers, r, passage) - left_inside);
   return left;
 }
 

@@ -69,8 +69,9 @@ ReferenceInterface reference_fresnel(const Wide& cos_theta_d, const Wide& refrac
 /// What one passage through a yarn layer leaves.
 Real reference_passage(const Real& absorption, const Real& cos_theta_t);
 
-/// All the light that comes out of a pile of layers, the surface reflection included.
-Real reference_pile_reflectance(int layers, const Real& reflected, const Real& passage);
+/// All the light that comes out of a pile of layers, without the surface reflection: beside that,
+/// strongly absorbed light would be lost even in 50 digits.
+Real reference_pile_inside(int layers, const Real& reflected, const Real& passage);
 
 /// Light by the number of its events: weights[E] leaves after E events, weights[0] = 0, weights[1]
 /// the surface reflection. The last one, E = 1025, is all that is left then, too. Shorter where

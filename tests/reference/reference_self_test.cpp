@@ -61,8 +61,8 @@ TEST_CASE("the reference's pile of plates is the sum of all its walks") {
     const std::vector<Real> walk = reference_walk(layers, r, passage);
     REQUIRE(walk.size() < 1000);  // it ended by itself: nothing was filled up
     Real sum = 0;
-    for (const Real& weight : walk) sum += weight;
-    CHECK(relative(sum, reference_pile_reflectance(layers, r, passage)) < kNearlyAll);
+    for (std::size_t e = 2; e < walk.size(); ++e) sum += walk[e];
+    CHECK(relative(sum, reference_pile_inside(layers, r, passage)) < kNearlyAll);
   }
 }
 

@@ -87,6 +87,10 @@ class RandomInputs {
   /// close to the mirror direction, where narrow lobes are not small.
   DirectionPair pair() {
     DirectionPair pair{theta(), azimuth(), theta(), azimuth()};
+    if (chance(0.1)) {
+      pair.phi_i = 30.0 * integer(-24, 24);
+      pair.phi_o = pair.phi_i + 30.0 * integer(-6, 6);
+    }
     if (chance(0.25)) {
       const double off = log_uniform(1e-9, 10);
       pair.theta_o = std::fmin(std::fabs(pair.theta_i + off * uniform(-1, 1)), 89.9);

@@ -1,0 +1,188 @@
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <tuple>
+
+#include "model/reflectance.h"
+#include "support/errors.h"
+#include "table/table.h"
+#include "tabulate/model_producer.h"
+#include "tests/catch.h"
+#include "tests/support/random_inputs.h"
+
+namespace clothbrdf::test {
+namespace {
+
+// Vectors from the grid's node to the model's exact input lose 2 eps / (axis * cos_theta_d); sums
+// over lobes in another order a few eps.
+constexpr double kSameToRounding = 2e-13;
+
+double relative_error(double value, double exact) {
+  return exact == 0 ? std::abs(value) : std::abs(value / exact - 1);
+}
+
+Material random_material(RandomInputs& random, Reflectance reflectance) {
+  MaterialRanges ranges;
+  ranges.lowest_axis = 0.1;
+  Material material = random.material(ranges);
+  material.reflectance = reflectance;
+  return material;
+}
+
+double part_of(const Components& f, const Channel& channel) {
+  switch (channel.part) {
+    case Part::kSpecular: return f.specular[channel.colour];
+    case Part::kInternal: return f.internal[channel.colour];
+    case Part::kDiffuse: return f.diffuse[channel.colour];
+    case Part::kTotal: break;
+  }
+  return f.total(channel.colour);
+}
+
+}  // namespace
+
+TEST_CASE("point values are those of the model at the nodes, component by component") {
+  const std::uint64_t seed = seed_from_environment();
+  RandomInputs random(seed);
+  double worst = 0;
+  int compared = 0;
+  for (int n = 0; n < 12; ++n) {
+    const Reflectance reflectance = n % 2 == 0 ? Reflectance::kMicrofacet : Reflectance::kPaper;
+    const Material material = random_material(random, reflectance);
+    const ClothModel<double> model(material);
+    const double turn = reflectance == Reflectance::kPaper ? 360 : 180;
+    for (const Grid& grid : {halfdiff4d(5, 4, 6, 8, turn), inout(4, 6, 3, 4), inout(3, 6, 3, 6)}) {
+      const Table table =
+          collect(*make_producer(material_spec(material, {}, grid, {}, true), 2), 2);
+      for (std::size_t cell = 0; cell < grid.cell_count(); ++cell) {
+        const Directions d = grid.directions(cell);
+        const Components f = model.evaluate(pair_geometry(d.wi, d.wo, material.rotation_deg));
+        for (std::size_t c = 0; c < table.spec().channels.size(); ++c) {
+          const double exact = part_of(f, table.spec().channels[c]);
+          // A node on the horizon may fall on either side of it.
+          if (std::min(std::abs(d.wi[2]), std::abs(d.wo[2])) < 1e-12) continue;
+          const double error = relative_error(table.value(cell, c), exact);
+          worst = std::max(worst, error);
+          ++compared;
+          if (error > kSameToRounding) {
+            INFO(grid.description()
+                 << " cell " << cell << " channel " << full_name(table.spec().channels[c]));
+            CHECK(table.value(cell, c) == exact);
+          }
+        }
+      }
+    }
+  }
+  std::cout << "point values against the model: worst relative error " << worst << " of "
+            << compared << " (seed " << seed << ")\n";
+  CHECK(worst <= kSameToRounding);
+}
+
+TEST_CASE("a grid without phi_h holds the mean over phi_h") {
+  RandomInputs random(seed_from_environment());
+  for (const Reflectance reflectance : {Reflectance::kMicrofacet, Reflectance::kPaper}) {
+    const Material material = random_material(random, reflectance);
+    const double turn = reflectance == Reflectance::kPaper ? 360 : 180;
+    const Table mean =
+        collect(*make_producer(material_spec(material, {}, halfdiff3d(6, 5, 8, turn)), 1), 1);
+    // The trapezoid rule converges geometrically for a periodic function.
+    constexpr int kAzimuths = 720;
+    const Grid fine = halfdiff4d(6, kAzimuths, 5, 8, turn);
+    const Table all = collect(*make_producer(material_spec(material, {}, fine), 1), 1);
+    for (std::size_t cell = 0; cell < mean.spec().cell_count(); ++cell) {
+      const std::size_t row = cell / 40;
+      double sum = 0;
+      for (std::size_t p = 0; p < kAzimuths; ++p)
+        sum += all.value((row * kAzimuths + p) * 40 + cell % 40, 0);
+      CHECK(relative_error(sum / kAzimuths, mean.value(cell, 0)) <= 1e-12);
+    }
+  }
+}
+
+TEST_CASE("the components' sum equals the total to rounding, whichever are on") {
+  RandomInputs random(seed_from_environment());
+  const Material material = random_material(random, Reflectance::kMicrofacet);
+  for (const Grid& grid : {halfdiff3d(9, 8, 10), halfdiff4d(5, 4, 6, 8), inout(4, 6, 4, 6)}) {
+    std::vector<Table> tables;
+    for (const Effects& effects :
+         {Effects{}, Effects{true, false, false}, Effects{false, true, false},
+          Effects{false, false, true}, Effects{true, true, false}}) {
+      tables.push_back(collect(*make_producer(material_spec(material, effects, grid), 1), 1));
+    }
+    for (std::size_t cell = 0; cell < grid.cell_count(); ++cell) {
+      const double total = tables[0].value(cell, 1);
+      CHECK(std::abs(tables[1].value(cell, 1) + tables[2].value(cell, 1) +
+                     tables[3].value(cell, 1) - total) <= 4e-16 * total);
+      CHECK(std::abs(tables[4].value(cell, 1) + tables[3].value(cell, 1) - total) <= 4e-16 * total);
+    }
+  }
+}
+
+TEST_CASE("a non-reciprocal table that stops at 180 degrees holds the mean of both orders") {
+  RandomInputs random(seed_from_environment());
+  const Material material = random_material(random, Reflectance::kPaper);
+  const Table folded =
+      collect(*make_producer(material_spec(material, {}, halfdiff3d(5, 6, 4, 180)), 1), 1);
+  const Table whole =
+      collect(*make_producer(material_spec(material, {}, halfdiff3d(5, 6, 8, 360)), 1), 1);
+  int compared = 0;
+  for (std::size_t row = 0; row < 30; ++row) {
+    for (std::size_t p = 0; p < 4; ++p) {
+      const double mean = (whole.value(row * 8 + p, 2) + whole.value(row * 8 + p + 4, 2)) / 2;
+      CHECK(relative_error(folded.value(row * 4 + p, 2), mean) <= 1e-14);
+      if (mean > 0) ++compared;
+    }
+  }
+  CHECK(compared > 30);
+}
+
+TEST_CASE("the same bits for any number of threads and any grouping of rows") {
+  RandomInputs random(seed_from_environment());
+  const Material material = random_material(random, Reflectance::kMicrofacet);
+  for (const auto& [grid, cells] :
+       {std::pair{halfdiff3d(30, 20, 40), CellRule{}},
+        std::pair{halfdiff4d(9, 8, 10, 12), CellRule{}}, std::pair{inout(5, 12, 5, 12), CellRule{}},
+        std::pair{halfdiff3d(7, 6, 8), CellRule{true, 1e-3}}}) {
+    const TableSpec spec = material_spec(material, {}, grid, cells, true);
+    const Table one = collect(*make_producer(spec, 1), 1);
+    const Table three = collect(*make_producer(spec, 3), 3);
+    CHECK(std::equal(one.values().begin(), one.values().end(), three.values().begin(),
+                     three.values().end()));
+    std::vector<double> row(spec.row_values());
+    make_producer(spec, 1)->fill_rows(spec.row_count() - 1, row);
+    CHECK(std::equal(row.begin(), row.end(),
+                     one.values().end() - static_cast<std::ptrdiff_t>(row.size())));
+  }
+}
+
+TEST_CASE("a producer answers any pairs with the model's own values") {
+  RandomInputs random(seed_from_environment());
+  const Material material = random_material(random, Reflectance::kMicrofacet);
+  const ClothModel<double> model(material);
+  std::vector<DirectionPair> pairs;
+  for (int n = 0; n < 50; ++n) pairs.push_back(random.pair());
+  TableSpec spec = material_spec(material, {}, inout(2, 2, 2, 2));
+  spec.samples = pairs;
+  const Table table = collect(*make_producer(spec, 1), 1);
+  for (std::size_t p = 0; p < pairs.size(); ++p) {
+    const Components f = model.evaluate(pair_geometry(pairs[p], material.rotation_deg));
+    for (std::size_t c = 0; c < 3; ++c) CHECK(table.value(p, c) == f.total(c));
+  }
+}
+
+TEST_CASE("a table that cannot be made is refused before any work") {
+  RandomInputs random(seed_from_environment());
+  Material material = random_material(random, Reflectance::kPaper);
+  const CellRule average{.average = true};
+  CHECK_THROWS_AS(make_producer(material_spec(material, {}, halfdiff3d(), average), 1), InputError);
+  TableSpec spec = material_spec(material, {}, halfdiff3d());
+  spec.channels.push_back({"fourth", Part::kTotal, 3});
+  CHECK_THROWS_AS(make_producer(spec, 1), InputError);
+  spec.provenance.material.reset();
+  CHECK_THROWS_AS(make_producer(spec, 1), InputError);
+  material.warp.scatter = 2;
+  CHECK_THROWS_AS(make_producer(material_spec(material, {}, halfdiff3d()), 1),
+                  std::invalid_argument);
+}
+
+}  // namespace clothbrdf::test
