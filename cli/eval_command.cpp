@@ -1,12 +1,19 @@
 #include <unistd.h>
 
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
+#include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "cli/commands.h"
 #include "cli/options.h"
@@ -20,7 +27,7 @@ namespace {
 struct EvalOptions {
   std::string material;
   std::string pairs = "-";
-  std::string effects;
+  std::optional<std::string> effects;
 };
 
 // 17 significant digits: reads back to the same bits.
@@ -54,6 +61,12 @@ std::string json_line(const DirectionPair& pair, const Components& f) {
   return out += "}}\n";
 }
 
+// As messages show what was given, however long it is.
+std::string quoted(std::string_view text) {
+  constexpr std::size_t kLongest = 60;
+  return "'" + std::string(text.substr(0, kLongest)) + (text.size() > kLongest ? "..." : "") + "'";
+}
+
 // A line of four angles; none for an empty line or a comment.
 std::optional<DirectionPair> parse_pair(const std::string& line, const std::string& where) {
   const auto fail = [&](const std::string& what) {
@@ -68,36 +81,43 @@ std::optional<DirectionPair> parse_pair(const std::string& line, const std::stri
     if (at == end || (*at == '#' && count == 0)) break;
     if (count == 4) throw fail("more than four values");
     const char* stop = std::find_if(at, end, [](unsigned char c) { return std::isspace(c) != 0; });
-    if (*at == '+') ++at;
-    const auto [next, error] = std::from_chars(at, stop, angles[count]);
+    const std::string_view word(at, stop);
+    // from_chars takes no plus sign.
+    const char* const digits = word.starts_with('+') && !word.starts_with("+-") ? at + 1 : at;
+    const auto [next, error] = std::from_chars(digits, stop, angles[count]);
     if (error != std::errc() || next != stop || !std::isfinite(angles[count])) {
-      throw fail("'" + std::string(at, stop) + "' is not a finite number");
+      throw fail(quoted(word) + " is not a finite number");
+    }
+    if (count % 2 == 0 && (angles[count] < 0 || angles[count] > 180)) {
+      throw fail(std::string(count == 0 ? "theta_i " : "theta_o ") + quoted(word) +
+                 " is not allowed: 0 to 180");
     }
     at = stop;
     ++count;
   }
   if (count == 0) return std::nullopt;
   if (count < 4) throw fail("only " + std::to_string(count) + (count == 1 ? " value" : " values"));
-  for (const double theta : {angles[0], angles[2]}) {
-    if (theta < 0 || theta > 180) throw fail("theta must lie in [0, 180]");
-  }
   return DirectionPair{angles[0], angles[1], angles[2], angles[3]};
 }
 
 void eval(const EvalOptions& options) {
   const Material material = read_material(options.material);
-  const ClothModel<double> model(
-      material, options.effects.empty() ? Effects{} : parse_effects(options.effects));
+  const ClothModel<double> model(material,
+                                 options.effects ? parse_effects(*options.effects) : Effects{});
   std::ifstream file;
   const bool standard_input = options.pairs == "-";
   if (!standard_input) {
+    if (std::filesystem::is_directory(options.pairs))
+      throw InputError(options.pairs + ": is a directory; a file of pairs is needed");
     file.open(options.pairs);
-    if (!file) throw InputError(options.pairs + ": cannot read this file");
+    if (!file) throw InputError(options.pairs + ": cannot be read: " + std::strerror(errno));
   } else if (::isatty(STDIN_FILENO) != 0) {
     std::cerr
         << "Reading pairs 'theta_i phi_i theta_o phi_o' in degrees, one a line; Ctrl-D ends.\n";
   }
   std::istream& in = standard_input ? std::cin : file;
+  // Whoever types or pipes line by line gets each answer before the next line is awaited.
+  in.tie(&std::cout);
   const std::string name = standard_input ? "standard input" : options.pairs;
   std::size_t number = 0;
   for (std::string line; std::getline(in, line);) {
@@ -106,8 +126,6 @@ void eval(const EvalOptions& options) {
         parse_pair(line, name + ": line " + std::to_string(number));
     if (!pair) continue;
     std::cout << json_line(*pair, model.evaluate(pair_geometry(*pair, material.rotation_deg)));
-    // Whoever types or pipes line by line gets each answer at once.
-    if (standard_input && in.rdbuf()->in_avail() <= 0) std::cout.flush();
     if (!std::cout) throw WorkError("cannot write to standard output");
   }
   if (in.bad()) throw WorkError(name + ": cannot read");
@@ -121,13 +139,20 @@ void add_eval_command(CLI::App& program) {
       "eval",
       "Exact f_r (1/sr, without the cosine), component by component, as one JSON object a line.\n"
       "Example: echo '30 0 45 180' | clothbrdf eval materials/silk.json");
-  command->add_option("MATERIAL", options->material, "material file (JSON)")->required();
-  command->add_option(
-      "--pairs", options->pairs,
-      "file of direction pairs, 'theta_i phi_i theta_o phi_o' in degrees, one a line; '#' starts a "
-      "comment line; - is standard input, the default");
-  command->add_option("--effects", options->effects,
-                      "only these components, joined by ',': specular, internal, diffuse");
+  command->add_option("MATERIAL", options->material, "material file (JSON)")
+      ->required()
+      ->type_name("FILE");
+  command
+      ->add_option("--pairs", options->pairs,
+                   "file of direction pairs, 'theta_i phi_i theta_o phi_o' in degrees, one a line; "
+                   "'#' starts a "
+                   "comment line; - is standard input, the default")
+      ->type_name("FILE");
+  command
+      ->add_option_function<std::string>(
+          "--effects", [options](const std::string& list) { options->effects = list; },
+          "only these components, joined by ',': specular, internal, diffuse")
+      ->type_name("LIST");
   command->add_flag("--json")->description(
       "the output is always JSON; accepted so that all commands take it");
   command->callback([options] { eval(*options); });

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <iostream>
 #include <limits>
 #include <memory>
@@ -142,6 +143,14 @@ void print_text(const Json& info, const std::string& indent) {
   }
 }
 
+std::string known_endings() {
+  std::string known;
+  for (const Format& format : formats()) {
+    known += std::string(format.ending) + " (" + std::string(format.name) + "), ";
+  }
+  return known + ".json (material)";
+}
+
 void info(const InfoOptions& options) {
   const Format* format = find_format(options.file);
   Json content;
@@ -150,10 +159,12 @@ void info(const InfoOptions& options) {
   } else if (std::filesystem::path(options.file).extension() == ".json") {
     content = material_info(options.file, read_material(options.file));
   } else {
-    static_cast<void>(format_for(options.file));  // says which endings there are
+    throw InputError(options.file + ": the ending '" +
+                     std::filesystem::path(options.file).extension().string() +
+                     "' is not that of a table or a material; known: " + known_endings());
   }
   if (options.json) {
-    std::cout << content.dump() << '\n';
+    std::cout << content.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
   } else {
     print_text(content, "");
   }
@@ -167,7 +178,8 @@ void add_info_command(CLI::App& program) {
                                              "What a table or material file holds.\n"
                                              "Example: clothbrdf info silk.exr");
   command->add_option("FILE", options->file, "table (.binary, .exr) or material (.json)")
-      ->required();
+      ->required()
+      ->type_name("FILE");
   command->add_flag("--json", options->json, "as one JSON object");
   command->callback([options] { info(*options); });
 }

@@ -1,8 +1,10 @@
+#include <algorithm>
 #include <csignal>
 #include <exception>
 #include <iostream>
 #include <new>
 #include <string>
+#include <vector>
 
 #include "cli/commands.h"
 #include "support/errors.h"
@@ -12,23 +14,62 @@ namespace {
 
 constexpr int kFailed = 1;
 constexpr int kBadInput = 2;
+constexpr const char* kCannotPrint = "cannot write to standard output";
 
-int complain(const std::string& message, int exit_code) {
+// One line, whatever the names in it hold.
+int complain(std::string message, int exit_code) {
+  std::replace_if(
+      message.begin(), message.end(), [](unsigned char c) { return c < 0x20 || c == 0x7F; }, '?');
   std::cout.flush();
   std::cerr << "clothbrdf: " << message << '\n';
   return exit_code;
 }
 
+std::string command_names(const CLI::App& program) {
+  std::string names;
+  for (const CLI::App* command : program.get_subcommands([](const CLI::App*) { return true; })) {
+    names += (names.empty() ? "" : ", ") + command->get_name();
+  }
+  return names;
+}
+
+// CLI11 complains of the first thing that is missing, even where that follows from a misspelt word
+// before it; its own text where there is no better one.
+std::string usage_error(const CLI::App& program, const CLI::ParseError& error) {
+  const std::vector<CLI::App*> given = program.get_subcommands();
+  const std::string command = given.empty() ? "" : given.front()->get_name();
+  const std::string help = "; see clothbrdf " + command + (command.empty() ? "--help" : " --help");
+  const std::vector<std::string> unknown = program.remaining(true);
+  if (!unknown.empty()) {
+    const std::string& first = unknown.front();
+    if (first.starts_with('-')) {
+      return "'" + first + "' is not an option" + (command.empty() ? "" : " of " + command) + help;
+    }
+    if (!command.empty()) return "'" + first + "' is one argument too many for " + command + help;
+    return "'" + first + "' is not a command; known: " + command_names(program);
+  }
+  if (command.empty()) return "a command is required: " + command_names(program) + help;
+  const std::string text = error.what();
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) {
+    const std::string option = text.substr(0, text.find(':'));
+    if (text.ends_with(" missing")) return option + ": a value is required" + help;
+    if (text.find(" received ") != std::string::npos) return option + ": allowed only once" + help;
+  }
+  return text + help;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  // A limit on file sizes or a closed pipe is an error like any other, not a death.
+  // A limit on file sizes is an error like any other, not a death. (A closed pipe stays one:
+  // whoever closed it wants no more.)
   std::signal(SIGXFSZ, SIG_IGN);
   std::ios::sync_with_stdio(false);
 
   CLI::App program(
       "Turns a description of woven cloth into reflectance tables.\n"
-      "Example: clothbrdf tabulate materials/silk.json -o silk.binary -o silk.exr");
+      "Example: clothbrdf tabulate materials/silk.json -o silk.binary -o silk.exr",
+      "clothbrdf");
   program.set_version_flag("--version", std::string("clothbrdf ") + clothbrdf::kVersion);
   program.require_subcommand(1);
   clothbrdf::add_eval_command(program);
@@ -38,12 +79,14 @@ int main(int argc, char** argv) {
   try {
     program.parse(argc, argv);
     std::cout.flush();
-    if (!std::cout) return complain("cannot write to standard output", kFailed);
+    if (!std::cout) return complain(kCannotPrint, kFailed);
     return 0;
   } catch (const CLI::Success& help_or_version) {
-    return program.exit(help_or_version);
+    program.exit(help_or_version);
+    std::cout.flush();
+    return std::cout ? 0 : complain(kCannotPrint, kFailed);
   } catch (const CLI::ParseError& error) {
-    return complain(std::string(error.what()) + "; see clothbrdf --help", kBadInput);
+    return complain(usage_error(program, error), kBadInput);
   } catch (const clothbrdf::InputError& error) {
     return complain(error.what(), kBadInput);
   } catch (const clothbrdf::WorkError& error) {

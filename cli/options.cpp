@@ -47,6 +47,18 @@ CellRule parse_cells(const std::string& text) {
       "' is not allowed: point, average or average:REL, REL the relative tolerance from 1e-9 to 1");
 }
 
+int parse_threads(const std::string& text) {
+  constexpr int kMost = 1024;
+  int threads = 0;
+  const char* end = text.data() + text.size();
+  const auto [next, error] = std::from_chars(text.data(), end, threads);
+  if (error != std::errc() || next != end || threads < 1 || threads > kMost) {
+    throw InputError("--threads: '" + text + "' is not allowed: a whole number from 1 to " +
+                     std::to_string(kMost));
+  }
+  return threads;
+}
+
 std::string effects_text(const Effects& effects) {
   std::string text;
   for (const EffectName& effect : kEffectNames) {

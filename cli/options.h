@@ -16,7 +16,10 @@ Effects parse_effects(const std::string& list);
 /// "point", "average" or "average:REL".
 CellRule parse_cells(const std::string& text);
 
-/// "on, all" and the like, for people.
+/// 1 to 1024.
+int parse_threads(const std::string& text);
+
+/// "specular, diffuse", for people.
 std::string effects_text(const Effects& effects);
 
 }  // namespace clothbrdf

@@ -1,8 +1,10 @@
+#include <algorithm>
 #include <chrono>
 #include <iomanip>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -21,10 +23,10 @@ namespace {
 struct TabulateOptions {
   std::string material;
   std::vector<std::string> outputs;
-  std::string grid;
+  std::optional<std::string> grid;
   std::string cells = "point";
-  std::string effects;
-  int threads = 0;
+  std::optional<std::string> effects;
+  std::optional<std::string> threads;
   bool half = false;
   bool compress = false;
   bool components = false;
@@ -54,10 +56,10 @@ Output plan_output(const TabulateOptions& options, const Material& material,
                    const std::string& name) {
   const Format& format = format_for(name);
   Grid grid = format.default_grid(material.reflectance);
-  if (!options.grid.empty()) {
-    const Grid wanted = parse_grid(options.grid, grid.axes.back().highest_deg);
+  if (options.grid) {
+    const Grid wanted = parse_grid(*options.grid, grid.axes.back().highest_deg);
     if (format.fixed_grid && wanted != grid) {
-      throw InputError("--grid: '" + options.grid + "' is not allowed for " + name + ": " +
+      throw InputError("--grid: '" + *options.grid + "' is not allowed for " + name + ": " +
                        std::string(format.name) + " holds " + grid.description() + " only");
     }
     grid = wanted;
@@ -71,7 +73,7 @@ Output plan_output(const TabulateOptions& options, const Material& material,
   refuse(options.components && !format.has_components, "--components");
   refuse(options.half && !format.has_options, "--half");
   refuse(options.compress && !format.has_options, "--compress");
-  const Effects effects = options.effects.empty() ? Effects{} : parse_effects(options.effects);
+  const Effects effects = options.effects ? parse_effects(*options.effects) : Effects{};
   TableSpec spec =
       material_spec(material, effects, grid, parse_cells(options.cells), options.components);
   return {name, &format, std::move(spec), what_is_lost(material, grid)};
@@ -94,7 +96,7 @@ void report(const TabulateOptions& options, const Output& output, std::uint64_t 
                                    {"channels", output.spec.channels.size()}};
     if (!options.dry_run) line.update({{"bytes", bytes}, {"seconds", seconds}});
     if (!output.note.empty()) line["note"] = output.note;
-    std::cout << line.dump() << '\n';
+    std::cout << line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
     return;
   }
   std::ostringstream text;
@@ -112,16 +114,18 @@ void report(const TabulateOptions& options, const Output& output, std::uint64_t 
 
 void tabulate(const TabulateOptions& options) {
   const Material material = read_material(options.material);
-  const int threads = options.threads > 0 ? options.threads : default_threads();
+  const int threads = options.threads ? parse_threads(*options.threads) : default_threads();
   std::vector<Output> outputs;
-  for (const std::string& name : options.outputs)
+  for (const std::string& name : options.outputs) {
+    if (std::any_of(outputs.begin(), outputs.end(),
+                    [&](const Output& other) { return other.path == name; }))
+      throw InputError("--output: " + name + " is given twice");
     outputs.push_back(plan_output(options, material, name));
-
-  std::vector<AtomicFile>
-      files;  // all opened before any work, so that a wrong folder costs nothing
-  if (!options.dry_run) {
-    for (const Output& output : outputs) files.emplace_back(output.path);
   }
+
+  // All opened before any work, so that a wrong folder costs nothing and a dry run finds it.
+  std::vector<AtomicFile> files;
+  for (const Output& output : outputs) files.emplace_back(output.path);
   for (std::size_t k = 0; k < outputs.size(); ++k) {
     const auto start = std::chrono::steady_clock::now();
     std::uint64_t bytes = 0;
@@ -148,30 +152,39 @@ void add_tabulate_command(CLI::App& program) {
   std::string known;
   for (const Format& f : formats())
     known += (known.empty() ? "" : "; ") + std::string(f.ending) + ": " + std::string(f.summary);
-  command->add_option("MATERIAL", options->material, "material file (JSON)")->required();
+  command->add_option("MATERIAL", options->material, "material file (JSON)")
+      ->required()
+      ->type_name("FILE");
   command->add_option("-o,--output", options->outputs, "table to write, repeatable (" + known + ")")
       ->required()
-      ->expected(1)
-      ->take_all();
-  command->add_option("--grid", options->grid,
-                      "halfdiff3d[:THxTDxPD], halfdiff4d[:THxPHxTDxPD] or inout[:TIxPIxTOxPO]; "
-                      "each format has its own "
-                      "default");
-  command->add_option("--cells", options->cells,
-                      "value of a cell: point (f_r at its node, the default) or average[:REL] "
-                      "(mean over the cell above "
-                      "the horizon, to the relative tolerance REL, 1e-3 where left out)");
-  command->add_option("--effects", options->effects,
-                      "only these components, joined by ',': specular, internal, diffuse");
+      ->type_name("FILE")
+      ->allow_extra_args(false);  // what follows the name may be the material
+  const auto text_option = [&](const char* name, std::optional<std::string>& value,
+                               const char* type, const char* help) {
+    // Kept apart from a value that is empty.
+    command
+        ->add_option_function<std::string>(
+            name, [options, &value](const std::string& text) { value = text; }, help)
+        ->type_name(type);
+  };
+  text_option("--grid", options->grid, "GRID",
+              "halfdiff3d[:THxTDxPD], halfdiff4d[:THxPHxTDxPD] or inout[:TIxPIxTOxPO]; each format "
+              "has its own default");
+  command
+      ->add_option(
+          "--cells", options->cells,
+          "value of a cell: point (f_r at its node, the default) or average[:REL] (mean "
+          "over the cell above the horizon, to the relative tolerance REL, 1e-3 where left "
+          "out)")
+      ->type_name("RULE");
+  text_option("--effects", options->effects, "LIST",
+              "only these components, joined by ',': specular, internal, diffuse");
   command->add_flag("--components", options->components,
                     "also layers specular.*, internal.*, diffuse.* (EXR)");
   command->add_flag("--half", options->half,
                     "16-bit floats (EXR); a value that does not fit is an error");
   command->add_flag("--compress", options->compress, "compress without loss (EXR)");
-  command
-      ->add_option("--threads", options->threads,
-                   "threads, 1 to 1024; all processors where left out")
-      ->check(CLI::Range(1, 1024));
+  text_option("--threads", options->threads, "N", "1 to 1024; all processors where left out");
   command->add_flag("--dry-run", options->dry_run,
                     "check everything, say what would be written, write nothing");
   command->add_flag("--json", options->json, "say what was written as one JSON object a line");

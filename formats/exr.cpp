@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "formats/table_metadata.h"
+#include "model/parameters.h"
 #include "support/errors.h"
 
 namespace clothbrdf {
@@ -91,11 +92,11 @@ class RowBuffer {
   const std::array<int, 4> index = grid.indices(cell);
   std::string where;
   for (std::size_t a = 0; a < grid.axes.size(); ++a) {
-    where += " " + grid.axes[a].name + " " + std::to_string(grid.axes[a].node_deg(index[a]));
+    where += " " + grid.axes[a].name + " " + number_text(grid.axes[a].node_deg(index[a]));
   }
   throw WorkError(name + ": " + full_name(spec.channels[at / spec.column_count()]) + " is " +
-                  std::to_string(value) + " at" + where + ", beyond the largest stored value " +
-                  std::to_string(largest) +
+                  number_text(value) + " at" + where + ", beyond the largest stored value " +
+                  number_text(largest) +
                   (largest < 1e5 ? "; leave out --half to store 32-bit floats" : ""));
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -115,7 +116,7 @@ template <class T>
 class LayerStack {
  public:
   LayerStack(int layers, const Interface<T>& interface, const T& absorption)
-      : layers_(layers), r_(interface.reflected), t_(interface.transmitted) {
+      : layers_(static_cast<std::size_t>(layers)), r_(interface.reflected), t_(interface.transmitted) {
     const Passage<T> yarn = passage(absorption, interface.cos_theta_t);
     passage_ = yarn.once;
     // From the bottom up: what the stack below an interface reflects, and what it keeps (1 - that).
@@ -124,7 +125,7 @@ class LayerStack {
     std::array<T, 2 * kMaxLayers> denominator;  // 1 - r * (what comes back from below)
     T below_reflects = T(0);
     T below_keeps = T(1);
-    for (int i = 2 * layers_ - 1; i >= 0; --i) {
+    for (std::size_t i = 2 * layers_; i-- > 0;) {
       if (i % 2 == 0) {  // yarn below: one passage down, one up
         below_keeps = yarn.lost_twice + passage_ * passage_ * below_keeps;
         below_reflects = passage_ * passage_ * below_reflects;
@@ -135,21 +136,21 @@ class LayerStack {
       below_keeps = t_ * below_keeps / denominator[i];
     }
     T above_escapes = T(1);  // of light about to meet the interface above from below
-    for (int k = 0; k < layers_; ++k) {
+    for (std::size_t k = 0; k < layers_; ++k) {
       const T in_yarn = t_ * above_escapes / denominator[2 * k];
       yarn_down_escapes_[k] = reflects[2 * k + 1] * passage_ * in_yarn;
       above_escapes = t_ * passage_ * in_yarn / denominator[2 * k + 1];
       gap_up_escapes_[k + 1] = above_escapes;
     }
-    for (int k = 0; k <= layers_; ++k) gap_down_[k] = gap_up_[k] = T(0);
-    for (int k = 0; k < layers_; ++k) yarn_down_[k] = T(0);
+    for (std::size_t k = 0; k <= layers_; ++k) gap_down_[k] = gap_up_[k] = T(0);
+    for (std::size_t k = 0; k < layers_; ++k) yarn_down_[k] = T(0);
     yarn_down_[0] = passage_ * t_;
   }
 
   /// All that will still come out.
   T remaining() const {
     T sum = T(0);
-    for (int k = 0; k < layers_; ++k)
+    for (std::size_t k = 0; k < layers_; ++k)
       sum += yarn_down_[k] * yarn_down_escapes_[k] + gap_up_[k + 1] * gap_up_escapes_[k + 1];
     return sum;
   }
@@ -159,11 +160,11 @@ class LayerStack {
   T step() {
     const T reflected_in = passage_ * r_;
     const T passed_in = passage_ * t_;
-    for (int k = 0; k < layers_; ++k) {
+    for (std::size_t k = 0; k < layers_; ++k) {
       yarn_up_[k] = reflected_in * yarn_down_[k] + passed_in * gap_up_[k + 1];
       gap_down_[k + 1] = t_ * yarn_down_[k] + r_ * gap_up_[k + 1];
     }
-    for (int k = 0; k < layers_; ++k) {
+    for (std::size_t k = 0; k < layers_; ++k) {
       gap_up_[k] = r_ * gap_down_[k] + t_ * yarn_up_[k];
       yarn_down_[k] = passed_in * gap_down_[k] + reflected_in * yarn_up_[k];
     }
@@ -171,7 +172,7 @@ class LayerStack {
   }
 
  private:
-  int layers_;
+  std::size_t layers_;
   T r_;
   T t_;
   T passage_;

@@ -17,6 +17,7 @@ namespace clothbrdf {
 namespace {
 
 constexpr mode_t kMode = 0666;  // less the user's umask
+constexpr int kMostLinks = 40;  // as Linux follows
 
 std::filesystem::path folder_of(const std::filesystem::path& file) {
   return file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
@@ -30,9 +31,11 @@ std::filesystem::path hidden_name(const std::filesystem::path& target, int attem
 }  // namespace
 
 AtomicFile::AtomicFile(const std::filesystem::path& target) : name_(target), target_(target) {
+  // Not by canonical(), which stays at a link that leads to no file yet.
   std::error_code error;
-  if (std::filesystem::is_symlink(target, error)) {
-    target_ = std::filesystem::weakly_canonical(target, error);
+  for (int links = 0; std::filesystem::is_symlink(target_, error); ++links) {
+    if (links == kMostLinks) fail("cannot write", ELOOP);
+    target_ = folder_of(target_) / std::filesystem::read_symlink(target_, error);
     if (error) fail("cannot follow the link", error.value());
   }
   struct stat status {};
@@ -123,11 +126,11 @@ void AtomicFile::link_to_target() {
 
 void AtomicFile::commit() {
   if (hidden_.empty()) link_to_target();
-  if (!hidden_.empty()) {
-    if (::rename(hidden_.c_str(), target_.c_str()) != 0) fail("cannot write", errno);
-    hidden_.clear();
-  }
+  // Before the rename: on a network file system closing tells of bytes that never arrived.
   if (::close(std::exchange(fd_, -1)) != 0) fail("cannot write", errno);
+  if (hidden_.empty()) return;
+  if (::rename(hidden_.c_str(), target_.c_str()) != 0) fail("cannot write", errno);
+  hidden_.clear();
 }
 
 }  // namespace clothbrdf

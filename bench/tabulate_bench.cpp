@@ -1,0 +1,137 @@
+// The kernels on one core, without files; bench/run says which limits they have. "cells" is a rate:
+// cells, or pairs of directions, per second of processor time.
+
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <cstddef>
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "formats/material_json.h"
+#include "model/degrees.h"
+#include "model/reflectance.h"
+#include "table/producer.h"
+#include "tabulate/model_producer.h"
+
+namespace clothbrdf {
+namespace {
+
+Material preset(const std::string& name) {
+  return read_material(CLOTHBRDF_SOURCE_DIR "/materials/" + name + ".json");
+}
+
+/// Two different yarns of 6 layers, one reflection a path.
+Material two_yarns() {
+  Material material = preset("tamamushi");
+  material.paths = Paths::kSingle;
+  material.warp.layers = 6;
+  material.weft.layers = 6;
+  return material;
+}
+
+/// A rate of so many cells an iteration.
+void count_cells(benchmark::State& state, std::size_t cells) {
+  state.counters["cells"] = {static_cast<double>(cells),
+                             benchmark::Counter::kIsIterationInvariantRate};
+}
+
+/// Directions uniform over the hemisphere.
+std::vector<DirectionPair> random_pairs(std::size_t count) {
+  std::mt19937_64 generator(20240501);
+  std::uniform_real_distribution<double> cosine(0.0, 1.0);
+  std::uniform_real_distribution<double> azimuth(0.0, 360.0);
+  const auto theta = [&] { return std::acos(cosine(generator)) * 180.0 / pi<double>(); };
+  std::vector<DirectionPair> pairs;
+  for (std::size_t k = 0; k < count; ++k) {
+    pairs.push_back({theta(), azimuth(generator), theta(), azimuth(generator)});
+  }
+  return pairs;
+}
+
+/// The model itself: what `eval` does for each pair, and the half vector that it needs.
+void evaluate(benchmark::State& state, const Material& material) {
+  const ClothModel<double> model(material);
+  const std::vector<DirectionPair> pairs = random_pairs(1024);
+  for (auto _ : state) {
+    for (const DirectionPair& pair : pairs) {
+      benchmark::DoNotOptimize(model.evaluate(pair_geometry(pair, material.rotation_deg)));
+    }
+  }
+  count_cells(state, pairs.size());
+}
+
+/// What all rows share.
+void setup(benchmark::State& state, const TableSpec& spec) {
+  for (auto _ : state) benchmark::DoNotOptimize(make_producer(spec, 1));
+}
+
+/// Every `step`-th row, one after the other into the same memory.
+void rows(benchmark::State& state, const TableSpec& spec, std::size_t step) {
+  const std::unique_ptr<Producer> producer = make_producer(spec, 1);
+  std::vector<double> values(spec.row_values());
+  for (auto _ : state) {
+    for (std::size_t row = 0; row < spec.row_count(); row += step) {
+      producer->fill_rows(row, values);
+      benchmark::DoNotOptimize(values.data());
+      benchmark::ClobberMemory();
+    }
+  }
+  count_cells(state, (spec.row_count() + step - 1) / step * spec.column_count());
+}
+
+/// All that `tabulate` computes, as its writers ask for it.
+void compute(benchmark::State& state, const TableSpec& spec) {
+  for (auto _ : state) {
+    stream_rows(*make_producer(spec, 1), 1,
+                [](std::size_t /*first_row*/, std::span<double> values) {
+                  benchmark::DoNotOptimize(values.data());
+                });
+  }
+  count_cells(state, spec.cell_count());
+}
+
+void register_all() {
+  const Material silk = preset("silk");
+  const CellRule average = {true, 1e-3};
+  // With the time of all threads: work that strayed to another one would not be hidden.
+  const auto add = [](const std::string& name, auto function, const auto&... arguments) {
+    benchmark::RegisterBenchmark(name.c_str(), function, arguments...)
+        ->MeasureProcessCPUTime()
+        ->Unit(benchmark::kMicrosecond);
+  };
+  const std::size_t every = 1;
+  const std::size_t few = 30;
+  const std::size_t fewer = 500;
+  add("evaluate/silk", evaluate, silk);
+  add("evaluate/two_yarns_single", evaluate, two_yarns());
+  const TableSpec merl = material_spec(silk, {}, halfdiff3d());
+  add("setup/silk.binary", setup, merl);
+  add("rows/silk.binary", rows, merl, every);
+  add("compute/silk.binary", compute, merl);
+  add("rows/two_yarns_single.binary", rows, material_spec(two_yarns(), {}, halfdiff3d()), every);
+  add("rows/halfdiff4d", rows, material_spec(silk, {}, halfdiff4d()), every);
+  add("rows/inout", rows, material_spec(silk, {}, inout()), every);
+  add("average/silk.binary", rows, material_spec(silk, {}, halfdiff3d(), average), few);
+  add("average/halfdiff4d", rows, material_spec(silk, {}, halfdiff4d(), average), fewer);
+  add("average/inout", rows, material_spec(silk, {}, inout(), average), few * 2);
+}
+
+}  // namespace
+}  // namespace clothbrdf
+
+int main(int argc, char** argv) {
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+#ifdef __clang__
+  benchmark::AddCustomContext("compiler", __VERSION__);
+#else
+  benchmark::AddCustomContext("compiler", "g++ " __VERSION__);
+#endif
+  clothbrdf::register_all();
+  benchmark::RunSpecifiedBenchmarks();
+  benchmark::Shutdown();
+  return 0;
+}
