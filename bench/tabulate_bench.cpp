@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <memory>
 #include <random>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -100,23 +101,28 @@ void register_all() {
   const auto add = [](const std::string& name, auto function, const auto&... arguments) {
     benchmark::RegisterBenchmark(name.c_str(), function, arguments...)
         ->MeasureProcessCPUTime()
+        ->MinTime(0.1)
+        ->Repetitions(5)
+        ->DisplayAggregatesOnly()
         ->Unit(benchmark::kMicrosecond);
   };
-  const std::size_t every = 1;
-  const std::size_t few = 30;
-  const std::size_t fewer = 500;
+  // `step` leaves 3 to 5 rows of the averages.
+  const auto add_rows = [&](const std::string& name, const Material& material, const Grid& grid,
+                            const CellRule& cells = {}, std::size_t step = 1) {
+    add(name, rows, material_spec(material, {}, grid, cells), step);
+  };
+  const TableSpec merl = material_spec(silk, {}, halfdiff3d());
   add("evaluate/silk", evaluate, silk);
   add("evaluate/two_yarns_single", evaluate, two_yarns());
-  const TableSpec merl = material_spec(silk, {}, halfdiff3d());
   add("setup/silk.binary", setup, merl);
-  add("rows/silk.binary", rows, merl, every);
+  add_rows("rows/silk.binary", silk, halfdiff3d());
   add("compute/silk.binary", compute, merl);
-  add("rows/two_yarns_single.binary", rows, material_spec(two_yarns(), {}, halfdiff3d()), every);
-  add("rows/halfdiff4d", rows, material_spec(silk, {}, halfdiff4d()), every);
-  add("rows/inout", rows, material_spec(silk, {}, inout()), every);
-  add("average/silk.binary", rows, material_spec(silk, {}, halfdiff3d(), average), few);
-  add("average/halfdiff4d", rows, material_spec(silk, {}, halfdiff4d(), average), fewer);
-  add("average/inout", rows, material_spec(silk, {}, inout(), average), few * 2);
+  add_rows("rows/two_yarns_single.binary", two_yarns(), halfdiff3d());
+  add_rows("rows/halfdiff4d", silk, halfdiff4d());
+  add_rows("rows/inout", silk, inout());
+  add_rows("average/silk.binary", silk, halfdiff3d(), average, 30);
+  add_rows("average/halfdiff4d", silk, halfdiff4d(), average, 500);
+  add_rows("average/inout", silk, inout(), average, 60);
 }
 
 }  // namespace

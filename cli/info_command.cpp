@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -120,25 +121,38 @@ Json material_info(const std::string& file, const Material& material) {
   return info;
 }
 
-// Nested objects as indented "key: value" lines.
+// For people: numbers to six digits, lists without quotes.
+std::string plain(const Json& value) {
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_number_float()) {
+    std::ostringstream text;
+    text << value.get<double>();
+    return text.str();
+  }
+  if (!value.is_array()) return value.dump();
+  std::string text;
+  for (const Json& item : value) text += (text.empty() ? "" : ", ") + plain(item);
+  return text;
+}
+
+// Nested objects as indented "key: value" lines, lists of objects as one line each.
 void print_text(const Json& info, const std::string& indent) {
   for (const auto& [key, value] : info.items()) {
+    std::cout << indent << key << ':';
     if (value.is_object()) {
-      std::cout << indent << key << ":\n";
+      std::cout << '\n';
       print_text(value, indent + "  ");
     } else if (value.is_array() && !value.empty() && value.front().is_object()) {
-      std::cout << indent << key << ":\n";
+      std::cout << '\n';
       for (const Json& item : value) {
         std::string line;
         for (const auto& [name, field] : item.items()) {
-          line += (line.empty() ? "" : ", ") + name + " " +
-                  (field.is_string() ? field.get<std::string>() : field.dump());
+          line += (line.empty() ? "" : ", ") + name + ' ' + plain(field);
         }
         std::cout << indent << "  " << line << '\n';
       }
     } else {
-      std::cout << indent << key << ": "
-                << (value.is_string() ? value.get<std::string>() : value.dump()) << '\n';
+      std::cout << ' ' << plain(value) << '\n';
     }
   }
 }

@@ -22,9 +22,10 @@ Effects parse_effects(const std::string& list) {
         any = found = true;
       }
     }
-    if (!found)
+    if (!found) {
       throw InputError("--effects: '" + name + "' is not an effect; allowed: " + known +
                        ", joined by ','");
+    }
   }
   if (!any) throw InputError("--effects: names none; allowed: " + known + ", joined by ','");
   return effects;

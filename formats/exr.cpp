@@ -169,7 +169,7 @@ TableSpec read_spec(const Imf::InputFile& in, const std::string& name) {
   }
   TableSpec spec = parse_table_metadata(attribute->value(), name + ": attribute 'clothbrdf'");
   const PictureSize size = picture_size(spec);
-  const Imath::Box2i window = header.dataWindow();
+  const Imath::Box2i& window = header.dataWindow();
   if (window.min != Imath::V2i(0, 0) || static_cast<std::size_t>(window.max.x) + 1 != size.width ||
       static_cast<std::size_t>(window.max.y) + 1 != size.height) {
     throw InputError(name + ": the picture is not of the size of its grid " +

@@ -50,16 +50,26 @@ void write_merl(const Producer& producer, AtomicFile& file, const WriteOptions& 
   file.reserve(kFileBytes);
   file.write_at(0, std::as_bytes(std::span(kSizes)));
   const std::size_t columns = spec.column_count();
-  stream_rows(producer, options.threads, [&](std::size_t row, std::span<double> values) {
-    for (; !values.empty(); ++row, values = values.subspan(spec.row_values())) {
+  // values[row][channel][column]: the rows of one channel lie one after the other in the file.
+  const auto row_of = [&](std::span<double> values, std::size_t row, std::size_t channel) {
+    return values.subspan((row * 3 + channel) * columns, columns);
+  };
+  const auto scale = [&](std::size_t, std::span<double> values) {
+    for (std::size_t row = 0; row < values.size() / spec.row_values(); ++row) {
       for (std::size_t c = 0; c < 3; ++c) {
-        const std::span<double> plane = values.subspan(c * columns, columns);
-        for (double& value : plane) value *= kStored[c];
-        file.write_at(kHeaderBytes + (c * kCells + row * columns) * sizeof(double),
-                      std::as_bytes(plane));
+        for (double& value : row_of(values, row, c)) value *= kStored[c];
       }
     }
-  });
+  };
+  const auto write = [&](std::size_t first_row, std::span<double> values) {
+    std::vector<std::span<const std::byte>> rows(values.size() / spec.row_values());
+    for (std::size_t c = 0; c < 3; ++c) {
+      for (std::size_t row = 0; row < rows.size(); ++row)
+        rows[row] = std::as_bytes(row_of(values, row, c));
+      file.write_at(kHeaderBytes + (c * kCells + first_row * columns) * sizeof(double), rows);
+    }
+  };
+  stream_rows(producer, options.threads, write, scale);
 }
 
 Table read_merl(const std::filesystem::path& path) {
@@ -85,7 +95,10 @@ Table read_merl(const std::filesystem::path& path) {
   }
   TableSpec spec{halfdiff3d(), rgb_channels(), {}, {}};
   std::vector<double> values(3 * kCells);
-  std::vector<std::uint8_t> valid(kCells, 1);
+  std::vector<std::uint8_t> valid(kCells);
+  for (std::size_t cell = 0; cell < kCells; ++cell) {
+    valid[cell] = spec.grid().any_above_horizon(cell) ? 1 : 0;
+  }
   std::vector<double> plane(kCells);
   const std::size_t columns = spec.column_count();
   for (std::size_t c = 0; c < 3; ++c) {

@@ -116,13 +116,15 @@ template <class T>
 class LayerStack {
  public:
   LayerStack(int layers, const Interface<T>& interface, const T& absorption)
-      : layers_(static_cast<std::size_t>(layers)), r_(interface.reflected), t_(interface.transmitted) {
+      : layers_(static_cast<std::size_t>(layers)),
+        r_(interface.reflected),
+        t_(interface.transmitted) {
     const Passage<T> yarn = passage(absorption, interface.cos_theta_t);
     passage_ = yarn.once;
     // From the bottom up: what the stack below an interface reflects, and what it keeps (1 - that).
-    std::array<T, 2 * kMaxLayers>
+    std::array<T, std::size_t{2} * kMaxLayers>
         reflects;  // interface i = 2 k: near side of yarn k, 2 k + 1: its far side
-    std::array<T, 2 * kMaxLayers> denominator;  // 1 - r * (what comes back from below)
+    std::array<T, std::size_t{2} * kMaxLayers> denominator;  // 1 - r * (what comes back from below)
     T below_reflects = T(0);
     T below_keeps = T(1);
     for (std::size_t i = 2 * layers_; i-- > 0;) {

@@ -38,10 +38,11 @@ T lobe_azimuthal_mean(const T& sin_theta_h, const T& cos_theta_h, const LobeAxes
   return cos_theta_h * axes.along * axes.across / (sqrt(s2 + a * a) * sqrt(s2 + b * b));
 }
 
-/// Mean of lobe_height over azimuths of h from `from` to `to`, radians from the yarn's direction, 0 < to - from <= pi.
+/// Mean of lobe_height over azimuths of h from `from` to `to`, radians from the yarn's direction, 0
+/// < to - from <= pi.
 template <class T>
-T lobe_azimuthal_mean(const T& sin_theta_h, const T& cos_theta_h, const LobeAxes<T>& axes, const T& from,
-                      const T& to) {
+T lobe_azimuthal_mean(const T& sin_theta_h, const T& cos_theta_h, const LobeAxes<T>& axes,
+                      const T& from, const T& to) {
   using std::atan2;
   using std::cos;
   using std::sin;

@@ -22,7 +22,8 @@ struct ParameterInfo {
 
 inline constexpr double kNoLimit = 1.797693134862315708e308;
 
-/// Most channels of a material: five times what the spectral databases hold (195), so more is a mistake.
+/// Most channels of a material: five times what the spectral databases hold (195), so more is a
+/// mistake.
 inline constexpr std::size_t kMaxChannels = 1024;
 
 inline constexpr ParameterInfo kParameters[] = {

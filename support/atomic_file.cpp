@@ -2,9 +2,11 @@
 
 #include <fcntl.h>
 #include <sys/stat.h>
+#include <sys/uio.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -93,6 +95,35 @@ void AtomicFile::reserve(std::uint64_t bytes) {
 #else
   static_cast<void>(bytes);
 #endif
+}
+
+void AtomicFile::write_at(std::uint64_t offset,
+                          std::span<const std::span<const std::byte>> pieces) {
+  constexpr std::size_t kMostPieces = 64;  // well below the system's IOV_MAX
+  while (!pieces.empty()) {
+    const std::span<const std::span<const std::byte>> now =
+        pieces.first(std::min(pieces.size(), kMostPieces));
+    std::array<iovec, kMostPieces> vector{};
+    std::size_t bytes = 0;
+    for (std::size_t k = 0; k < now.size(); ++k) {
+      // The interface is older than const; the bytes are only read.
+      vector[k] = {const_cast<std::byte*>(now[k].data()), now[k].size()};
+      bytes += now[k].size();
+    }
+    const ssize_t done =
+        ::pwritev(fd_, vector.data(), static_cast<int>(now.size()), static_cast<off_t>(offset));
+    if (done != static_cast<ssize_t>(bytes)) {
+      // Interrupted, full, or cut short: piece by piece, which finds out.
+      std::uint64_t at = offset;
+      for (const std::span<const std::byte> piece : now) {
+        write_at(at, piece);
+        at += piece.size();
+      }
+    }
+    offset += bytes;
+    pieces = pieces.subspan(now.size());
+  }
+  size_ = std::max(size_, offset);
 }
 
 void AtomicFile::write_at(std::uint64_t offset, std::span<const std::byte> bytes) {

@@ -30,6 +30,9 @@ class AtomicFile {
   void reserve(std::uint64_t bytes);
 
   void write_at(std::uint64_t offset, std::span<const std::byte> bytes);
+
+  /// One piece of the file from several pieces of memory: large writes cost less than small ones.
+  void write_at(std::uint64_t offset, std::span<const std::span<const std::byte>> pieces);
   std::uint64_t size() const { return size_; }
 
   /// Gives the file its name, in place of an older one.

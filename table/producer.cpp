@@ -10,8 +10,9 @@
 namespace clothbrdf {
 namespace {
 
-// Large enough that handing over costs nothing, small enough to stay in the second-level cache.
-constexpr std::size_t kBlockValues = 48 * 1024;
+// Large enough that files are written in pieces the system likes, small enough for the processor's
+// cache.
+constexpr std::size_t kBlockValues = 200000;
 
 struct Block {
   std::size_t first_row = 0;
@@ -20,7 +21,8 @@ struct Block {
 
 }  // namespace
 
-void stream_rows(const Producer& producer, int threads, const RowSink& take) {
+void stream_rows(const Producer& producer, int threads, const RowFunction& take,
+                 const RowFunction& prepare) {
   const TableSpec& spec = producer.spec();
   const std::size_t rows = spec.row_count();
   const std::size_t rows_per_block = std::max<std::size_t>(1, kBlockValues / spec.row_values());
@@ -44,6 +46,7 @@ void stream_rows(const Producer& producer, int threads, const RowSink& take) {
   };
   const auto compute = [&](Block* block) {
     producer.fill_rows(block->first_row, block->values);
+    if (prepare) prepare(block->first_row, block->values);
     return block;
   };
   const auto hand_over = [&](Block* block) { take(block->first_row, block->values); };

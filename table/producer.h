@@ -24,12 +24,13 @@ class Producer {
   virtual void fill_pairs(std::span<const DirectionPair> pairs, std::span<double> values) const = 0;
 };
 
-/// Takes rows in order; may change the values.
-using RowSink = std::function<void(std::size_t first_row, std::span<double> values)>;
+/// Is given whole rows, values[row][channel][column], and may change them.
+using RowFunction = std::function<void(std::size_t first_row, std::span<double> values)>;
 
-/// All rows of a producer in order, computed in blocks on `threads` threads while earlier blocks
-/// are taken. Memory: a few blocks of about a megabyte, or of one row where that is more. What
-/// `take` throws ends the work.
-void stream_rows(const Producer& producer, int threads, const RowSink& take);
+/// All rows of a producer, computed and prepared in blocks on `threads` threads while earlier
+/// blocks are taken, in order. Memory: a few blocks of about a megabyte, or of one row where that
+/// is more. What a function throws ends the work.
+void stream_rows(const Producer& producer, int threads, const RowFunction& take,
+                 const RowFunction& prepare = {});
 
 }  // namespace clothbrdf

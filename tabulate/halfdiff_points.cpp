@@ -7,12 +7,14 @@ namespace {
 
 std::vector<SinCos<double>> node_sincos(const Axis& axis) {
   std::vector<SinCos<double>> nodes;
+  nodes.reserve(static_cast<std::size_t>(axis.size));
   for (int k = 0; k < axis.size; ++k) nodes.push_back(sincosd(axis.node_deg(k)));
   return nodes;
 }
 
 std::vector<double> cosines(const std::vector<SinCos<double>>& angles) {
   std::vector<double> result;
+  result.reserve(angles.size());
   for (const SinCos<double>& angle : angles) result.push_back(angle.cos);
   return result;
 }

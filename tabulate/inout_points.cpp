@@ -59,7 +59,9 @@ void InOutPoints::fill_row(std::size_t row, std::span<double> values) const {
           density,
           static_cast<std::size_t>(theta_o) * delta_count() + static_cast<std::size_t>(step),
           sums.specular(), sums.internal());
-      const auto column = static_cast<std::size_t>(theta_o * axes[3].size + phi_o);
+      const std::size_t column =
+          static_cast<std::size_t>(theta_o) * static_cast<std::size_t>(axes[3].size) +
+          static_cast<std::size_t>(phi_o);
       for (std::size_t c = 0; c < spec_.channels.size(); ++c) {
         const Channel& channel = spec_.channels[c];
         values[c * columns + column] =

@@ -19,7 +19,7 @@ class InOutPoints final : public Kernel {
  private:
   void fill_row(std::size_t row, std::span<double> values) const;
   std::shared_ptr<const PathMatrix> paths_for(int theta_i) const;
-  std::size_t delta_count() const { return static_cast<std::size_t>(turn_steps_ / 2 + 1); }
+  std::size_t delta_count() const { return static_cast<std::size_t>(turn_steps_) / 2 + 1; }
 
   const TableSpec& spec_;
   const ClothModel<double>& model_;

@@ -2,9 +2,9 @@
 
 // Catch2 2 and 3.
 #if __has_include(<catch2/catch_test_macros.hpp>)
+#include <catch2/catch_template_test_macros.hpp>
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers_all.hpp>
-#include <catch2/catch_template_test_macros.hpp>
 namespace clothbrdf::test {
 using Catch::Matchers::ContainsSubstring;
 }  // namespace clothbrdf::test

@@ -32,9 +32,9 @@ inline bool enter_own_namespace() {
   return ::mount(nullptr, "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0;
 }
 
-/// A file system of its own of a few MiB, full sooner than any disk; it can be made read-only, which
-/// binds root, too. A child process holds it in a namespace of its own, so that nothing is left of
-/// it however the test ends; others reach it through /proc.
+/// A file system of its own of a few MiB, full sooner than any disk; it can be made read-only,
+/// which binds root, too. A child process holds it in a namespace of its own, so that nothing is
+/// left of it however the test ends; others reach it through /proc.
 class MountedFolder {
  public:
   explicit MountedFolder(int mebibytes) {
@@ -87,8 +87,7 @@ class MountedFolder {
   void hold(int mebibytes, int orders, int answers) const {
     const char* where = mount_point_.path().c_str();
     const std::string size = "size=" + std::to_string(mebibytes) + "m";
-    bool good =
-        enter_own_namespace() && ::mount("tmpfs", where, "tmpfs", 0, size.c_str()) == 0;
+    bool good = enter_own_namespace() && ::mount("tmpfs", where, "tmpfs", 0, size.c_str()) == 0;
     for (char order = 0;;) {
       if (::write(answers, good ? "y" : "n", 1) != 1 || ::read(orders, &order, 1) != 1) return;
       good = ::mount(nullptr, where, nullptr, MS_REMOUNT | MS_RDONLY, size.c_str()) == 0;

@@ -8,8 +8,8 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <csignal>
-#include <initializer_list>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -76,10 +76,10 @@ inline std::string read_all(const Descriptor& file) {
 
 /// What a run may be given beside its arguments.
 struct RunOptions {
-  std::string input;                       ///< of standard input
-  std::optional<rlim_t> file_size_limit;   ///< RLIMIT_FSIZE
-  std::optional<std::string> output_file;  ///< for standard output, instead of keeping it
-  bool output_closed = false;              ///< no standard output at all
+  std::string input = {};                       ///< of standard input
+  std::optional<rlim_t> file_size_limit = {};   ///< RLIMIT_FSIZE
+  std::optional<std::string> output_file = {};  ///< for standard output, instead of keeping it
+  bool output_closed = false;                   ///< no standard output at all
 };
 
 /// Starts the program with these as its standard streams; a program that hangs is ended.
@@ -129,14 +129,13 @@ inline Outcome run_program(const Arguments& arguments, const RunOptions& options
           ? detail::Descriptor(::open(options.output_file->c_str(), O_WRONLY | O_CLOEXEC))
           : detail::memory_file();
   for (std::size_t written = 0; written < options.input.size();) {
-    const ssize_t count = ::write(in.get(), options.input.data() + written,
-                                  options.input.size() - written);
+    const ssize_t count =
+        ::write(in.get(), options.input.data() + written, options.input.size() - written);
     if (count < 0) throw std::runtime_error("cannot set the input aside");
     written += static_cast<std::size_t>(count);
   }
   ::lseek(in.get(), 0, SEEK_SET);
-  Outcome outcome =
-      wait_for(start_program(arguments, in.get(), out.get(), err.get(), options));
+  Outcome outcome = wait_for(start_program(arguments, in.get(), out.get(), err.get(), options));
   if (!options.output_file) outcome.out = detail::read_all(out);
   outcome.err = detail::read_all(err);
   return outcome;
@@ -146,6 +145,7 @@ inline Outcome run_program(const Arguments& arguments, const RunOptions& options
 class RunningProgram {
  public:
   explicit RunningProgram(const Arguments& arguments) : err_(detail::memory_file()) {
+    std::signal(SIGPIPE, SIG_IGN);  // a program that died must fail its test, not end all of them
     auto [in_read, in_write] = detail::make_pipe();
     auto [out_read, out_write] = detail::make_pipe();
     pid_ = start_program(arguments, in_read.get(), out_write.get(), err_.get());

@@ -1,0 +1,173 @@
+#!/usr/bin/env python3
+"""Times the program as a user meets it, adds what tabulate_bench measured, and writes both down; bench/run calls it."""
+
+import collections
+import datetime
+import json
+import os
+import pathlib
+import platform
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+
+SOURCE = pathlib.Path(__file__).resolve().parent.parent
+MATERIAL = str(SOURCE / "materials" / "silk.json")
+RUNS = 15
+Run = collections.namedtuple("Run", "seconds peak_mb")
+
+
+def run(*command):
+    """Runs a program to its end."""
+    silent = [(os.POSIX_SPAWN_OPEN, 1, os.devnull, os.O_WRONLY, 0)]
+    start = time.perf_counter()
+    process = os.posix_spawnp(command[0], command, os.environ, file_actions=silent)
+    _, status, usage = os.wait4(process, 0)
+    seconds = time.perf_counter() - start
+    if status != 0:
+        sys.exit(f"whole_process.py: failed: {' '.join(command)}")
+    return Run(seconds, usage.ru_maxrss * 1024 / 1e6)
+
+
+def against_copy(tabulate, folder, replace):
+    """Seconds of `tabulate` and of cp of its result, in turn, each to a fresh name or over a file of its own."""
+    source = folder / "source.binary"
+    seconds = {"tabulate": [], "cp": []}
+    for number in range(-1, RUNS):  # the first is the warm-up, and leaves the files to be replaced
+        for who, taken in seconds.items():
+            target = folder / (f"{who}.binary" if replace else f"{who}{number}.binary")
+            command = [*tabulate, "-o", str(target)] if who == "tabulate" else ["cp", str(source), str(target)]
+            taken.append(run(*command).seconds)
+            if not replace:
+                target.unlink()
+    for who in seconds:
+        (folder / f"{who}.binary").unlink(missing_ok=True)
+    return {who: taken[1:] for who, taken in seconds.items()}
+
+
+def spread(seconds):
+    low, middle, high = (1e3 * f(seconds) for f in (min, statistics.median, max))
+    return {"median_ms": round(middle, 3), "min_ms": round(low, 3), "max_ms": round(high, 3)}
+
+
+def whole_processes(program, folder):
+    """The figures of whole runs: {name: {value, unit, ...}}."""
+    figures = {}
+    tabulate = [program, "tabulate", MATERIAL]
+    first = run(*tabulate, "-o", str(folder / "source.binary"))
+    run(program, "--version")
+    start_up = [run(program, "--version").seconds for _ in range(RUNS)]
+    for how in ("fresh", "replace"):
+        seconds = against_copy(tabulate, folder, how == "replace")
+        ratio = statistics.median(seconds["tabulate"]) / statistics.median(seconds["cp"])
+        pairwise = statistics.median(a / b for a, b in zip(seconds["tabulate"], seconds["cp"]))
+        figures[f"tabulate / cp, {how}"] = {
+            "value": ratio, "unit": "", "limit": 1.5, "median_of_pairwise_ratios": round(pairwise, 3),
+            **{who: spread(taken) for who, taken in seconds.items()}}
+        if how == "fresh":
+            share = statistics.median(start_up) / statistics.median(seconds["tabulate"])
+            figures["start-up, share of tabulate"] = {
+                "value": 100 * share, "unit": "%", "start_up": spread(start_up)}
+    # Linux counts a process from before its exec, so no peak is less than this script's own.
+    least = round(run("true").peak_mb, 1)
+    figures["peak memory, silk.binary"] = {
+        "value": first.peak_mb, "unit": "MB", "limit": 100, "least_measurable": least}
+    (folder / "source.binary").unlink()
+
+    large = folder / "large.exr"
+    streamed = run(*tabulate, "--grid", "halfdiff4d:90x36x90x90", "-o", str(large))
+    figures["peak memory, large.exr"] = {
+        "value": streamed.peak_mb, "unit": "MB", "limit": 200, "least_measurable": least,
+        "file_mb": round(large.stat().st_size / 1e6, 1), "seconds": round(streamed.seconds, 3)}
+    return figures
+
+
+def kernels(report):
+    """{name: microseconds of processor time, million cells per second} from Google Benchmark's JSON."""
+    runs = collections.defaultdict(list)
+    for row in report["benchmarks"]:
+        if row["run_type"] == "iteration":
+            runs["/".join(row["name"].split("/")[:2])].append(row)
+    result = {}
+    for name, rows in runs.items():
+        times = [row["cpu_time"] for row in rows]
+        result[name] = {"median_us": round(statistics.median(times), 1), "min_us": round(min(times), 1)}
+        if "cells" in rows[0]:
+            rate = statistics.median(row["cells"] for row in rows) / 1e6
+            result[name]["million_cells_per_s"] = float(f"{rate:.4g}")
+    return result
+
+
+def git(*arguments):
+    done = subprocess.run(["git", "--no-optional-locks", "-C", str(SOURCE), *arguments],
+                          capture_output=True, text=True, check=False)
+    return done.stdout.strip() or "unknown"
+
+
+def processor():
+    for line in pathlib.Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines():
+        if line.startswith("model name"):
+            return line.split(":", 1)[1].strip()
+    return platform.processor() or platform.machine()
+
+
+def file_system(folder):
+    """Type of the file system that holds a folder."""
+    mounts = (line.split() for line in pathlib.Path("/proc/self/mounts").read_text(encoding="utf-8").splitlines())
+    holding = [(len(at), kind) for _, at, kind, *_ in mounts if folder.is_relative_to(at)]
+    return max(holding)[1] if holding else "unknown"
+
+
+def print_report(result):
+    print("{commit}, {date}; {processor}, {processors} processors; Linux {kernel}; {compiler}; {file_system}; "
+          "load {load}".format_map(result))
+    print(f"\n{'kernel, one core':32}{'median us':>12}{'least us':>12}{'Mcells/s':>12}{'ns/cell':>12}")
+    for name, row in result["kernels"].items():
+        rate = row.get("million_cells_per_s")
+        per_cell = f"{rate:12.4g}{1e3 / rate:12,.2f}" if rate else ""
+        print(f"{name:32}{row['median_us']:12.1f}{row['min_us']:12.1f}{per_cell}")
+    print(f"\n{'whole runs, ms':32}{'median':>12}{'least':>12}{'most':>12}")
+    for name, figure in result["figures"].items():
+        for who in ("tabulate", "cp", "start_up"):
+            if who in figure:
+                label = f"{who}, {name.split(', ')[1]}" if who != "start_up" else "--version"
+                print(f"{label:32}" + "".join(f"{time_ms:12.1f}" for time_ms in figure[who].values()))
+    print(f"\n{'figure':32}{'value':>12}    {'limit':>12}")
+    for name, figure in result["figures"].items():
+        limit = f"{figure['limit']:12g}  {'met' if figure['met'] else 'MISSED'}" if "limit" in figure else ""
+        at_most = " (or less)" if figure["value"] <= 1.02 * figure.get("least_measurable", 0) else ""
+        print(f"{name:32}{figure['value']:12.4g} {figure['unit']:3}{limit}{at_most}".rstrip())
+    missed = [name for name, figure in result["figures"].items() if not figure.get("met", True)]
+    print("\n" + (f"limits missed: {'; '.join(missed)}" if missed else "all limits met"))
+    if result["file_system"] in ("tmpfs", "ramfs"):
+        print("the build folder is no disk: the ratios to cp say little")
+
+
+def main():
+    build = pathlib.Path(sys.argv[1]).resolve()
+    google = json.loads(pathlib.Path(sys.argv[2]).read_text(encoding="utf-8"))
+    load = os.getloadavg()[0]
+    measured = kernels(google)
+    compute = {"value": measured["compute/silk.binary"]["median_us"] / 1e3, "unit": "ms", "limit": 10}
+    with tempfile.TemporaryDirectory(dir=build / "bench") as folder:
+        figures = {"computing silk.binary, one core": compute,
+                   **whole_processes(str(build / "clothbrdf"), pathlib.Path(folder))}
+    for figure in figures.values():
+        if "limit" in figure:
+            figure["met"] = figure["value"] <= figure["limit"]
+        figure["value"] = float(f"{figure['value']:.4g}")
+    result = {
+        "commit": git("describe", "--always", "--dirty", "--exclude=*"),
+        "date": datetime.date.today().isoformat(), "processor": processor(), "processors": os.cpu_count(),
+        "kernel": platform.release(), "compiler": google["context"]["compiler"], "file_system": file_system(build),
+        "load": round(load, 2), "runs": RUNS, "figures": figures, "kernels": measured}
+    print_report(result)
+    output = SOURCE / "bench" / "results" / f"{result['date']}-{result['commit']}.json"
+    output.parent.mkdir(exist_ok=True)
+    output.write_text(json.dumps(result, indent=1) + "\n", encoding="utf-8")
+    print(f"written: {output.relative_to(SOURCE)}")
+
+
+main()
