@@ -1,10 +1,11 @@
 #pragma once
 
 #include <tbb/global_control.h>
-#include <tbb/info.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <cstddef>
+#include <thread>
 
 namespace clothbrdf {
 
@@ -18,7 +19,10 @@ void with_threads(int threads, const Work& work) {
   arena.execute(work);
 }
 
-/// Threads to use when the user does not say: one a processor.
-inline int default_threads() { return tbb::info::default_concurrency(); }
+/// Threads to use when the user does not say: one for each processor that the process may use. (TBB
+/// could tell, but looks for libraries first, which costs a millisecond.)
+inline int default_threads() {
+  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
 
 }  // namespace clothbrdf

@@ -12,7 +12,7 @@ namespace {
 
 // Large enough that files are written in pieces the system likes, small enough for the processor's
 // cache.
-constexpr std::size_t kBlockValues = 200000;
+constexpr std::size_t kBlockValues = 98000;
 
 struct Block {
   std::size_t first_row = 0;
