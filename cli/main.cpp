@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <csignal>
+#include <cstdio>
 #include <exception>
 #include <iostream>
 #include <new>
@@ -58,9 +59,7 @@ std::string usage_error(const CLI::App& program, const CLI::ParseError& error) {
   return text + help;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
   // A limit on file sizes is an error like any other, not a death. (A closed pipe stays one:
   // whoever closed it wants no more.)
   std::signal(SIGXFSZ, SIG_IGN);
@@ -95,5 +94,16 @@ int main(int argc, char** argv) {
     return complain("out of memory", kFailed);
   } catch (const std::exception& error) {
     return complain(std::string("internal error: ") + error.what(), kFailed);
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (...) {  // while complaining
+    std::fputs("clothbrdf: internal error\n", stderr);
+    return kFailed;
   }
 }

@@ -10,8 +10,9 @@ namespace clothbrdf {
 Effects parse_effects(const std::string& list) {
   Effects effects{.specular = false, .internal = false, .diffuse = false};
   std::string known;
-  for (const EffectName& effect : kEffectNames)
-    known += (known.empty() ? "" : ", ") + std::string(effect.name);
+  for (const EffectName& effect : kEffectNames) {
+    known.append(known.empty() ? "" : ", ").append(effect.name);
+  }
   std::istringstream names(list);
   bool any = false;
   for (std::string name; std::getline(names, name, ',');) {

@@ -20,6 +20,8 @@
 namespace clothbrdf {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 struct TabulateOptions {
   std::string material;
   std::vector<std::string> outputs;
@@ -56,26 +58,12 @@ Output plan_output(const TabulateOptions& options, const Material& material,
                    const std::string& name) {
   const Format& format = format_for(name);
   Grid grid = format.default_grid(material.reflectance);
-  if (options.grid) {
-    const Grid wanted = parse_grid(*options.grid, grid.axes.back().highest_deg);
-    if (format.fixed_grid && wanted != grid) {
-      throw InputError("--grid: '" + *options.grid + "' is not allowed for " + name + ": " +
-                       std::string(format.name) + " holds " + grid.description() + " only");
-    }
-    grid = wanted;
-  }
-  const auto refuse = [&](bool given, const char* option) {
-    if (given) {
-      throw InputError(std::string(option) + " is not allowed for " + name + ": " +
-                       std::string(format.name) + " has no such choice");
-    }
-  };
-  refuse(options.components && !format.has_components, "--components");
-  refuse(options.half && !format.has_options, "--half");
-  refuse(options.compress && !format.has_options, "--compress");
+  if (options.grid) grid = parse_grid(*options.grid, grid.axes.back().highest_deg);
   const Effects effects = options.effects ? parse_effects(*options.effects) : Effects{};
   TableSpec spec =
       material_spec(material, effects, grid, parse_cells(options.cells), options.components);
+  format.check(spec, {options.half, options.compress}, name);
+  check_producible(spec);
   return {name, &format, std::move(spec), what_is_lost(material, grid)};
 }
 
@@ -89,11 +77,11 @@ void report(const TabulateOptions& options, const Output& output, std::uint64_t 
             double seconds) {
   const Grid& grid = output.spec.grid();
   if (options.json) {
-    nlohmann::ordered_json line = {{"file", output.path.string()},
-                                   {"format", output.format->name},
-                                   {"grid", grid.description()},
-                                   {"cells", grid.cell_count()},
-                                   {"channels", output.spec.channels.size()}};
+    Json line = {{"file", output.path.string()},
+                 {"format", output.format->name},
+                 {"grid", grid.description()},
+                 {"cells", grid.cell_count()},
+                 {"channels", output.spec.channels.size()}};
     if (!options.dry_run) line.update({{"bytes", bytes}, {"seconds", seconds}});
     if (!output.note.empty()) line["note"] = output.note;
     std::cout << line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
@@ -118,13 +106,15 @@ void tabulate(const TabulateOptions& options) {
   std::vector<Output> outputs;
   for (const std::string& name : options.outputs) {
     if (std::any_of(outputs.begin(), outputs.end(),
-                    [&](const Output& other) { return other.path == name; }))
+                    [&](const Output& other) { return other.path == name; })) {
       throw InputError("--output: " + name + " is given twice");
+    }
     outputs.push_back(plan_output(options, material, name));
   }
 
   // All opened before any work, so that a wrong folder costs nothing and a dry run finds it.
   std::vector<AtomicFile> files;
+  files.reserve(outputs.size());
   for (const Output& output : outputs) files.emplace_back(output.path);
   for (std::size_t k = 0; k < outputs.size(); ++k) {
     const auto start = std::chrono::steady_clock::now();

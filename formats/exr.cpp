@@ -124,18 +124,26 @@ Grid exr_grid(Reflectance reflectance) {
   return parse_grid("halfdiff4d", reflectance == Reflectance::kPaper ? 360 : 180);
 }
 
+void check_exr(const TableSpec& spec, const WriteOptions& /*all are allowed*/,
+               const std::string& name) {
+  if (!spec.has_grid()) throw InputError(name + ": EXR holds grids, not lists of pairs");
+  const PictureSize size = picture_size(spec);
+  // OpenEXR counts pixels and bytes of a line in 32-bit integers.
+  constexpr std::size_t kMostBytes = std::numeric_limits<int>::max();
+  const std::size_t line_bytes = size.width * spec.channels.size() * sizeof(float);
+  if (line_bytes > kMostBytes || size.height > kMostBytes / 2) {
+    throw InputError(name + ": the grid " + spec.grid().description() +
+                     " is not allowed: its picture has " + std::to_string(size.width) + " x " +
+                     std::to_string(size.height) +
+                     " pixels; EXR holds lines of 2 GiB and 2^30 lines");
+  }
+}
+
 void write_exr(const Producer& producer, AtomicFile& file, const WriteOptions& options) {
   const TableSpec& spec = producer.spec();
   const std::string name = file.name().string();
-  if (!spec.has_grid()) throw InputError(name + ": EXR holds grids, not lists of pairs");
+  check_exr(spec, options, name);
   const PictureSize size = picture_size(spec);
-  // OpenEXR counts pixels in 32-bit integers.
-  constexpr std::size_t kMostPixels = std::numeric_limits<int>::max() / 2;
-  if (size.width > kMostPixels || size.height > kMostPixels) {
-    throw InputError(name + ": " + spec.grid().description() + " makes a picture of " +
-                     std::to_string(size.width) + " x " + std::to_string(size.height) +
-                     " pixels; EXR holds at most " + std::to_string(kMostPixels) + " each way");
-  }
   try {
     Imf::Header header(static_cast<int>(size.width), static_cast<int>(size.height));
     header.compression() = options.compress ? Imf::ZIP_COMPRESSION : Imf::NO_COMPRESSION;
@@ -231,9 +239,7 @@ Format exr_format() {
           .ending = ".exr",
           .summary = "any grid as a picture of floats, with a description that rebuilds the table",
           .default_grid = exr_grid,
-          .fixed_grid = false,
-          .has_components = true,
-          .has_options = true,
+          .check = check_exr,
           .write = write_exr,
           .read = read_exr};
 }

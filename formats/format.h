@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "support/atomic_file.h"
@@ -23,12 +24,12 @@ struct Format {
   std::string_view ending;   ///< of file names, with the dot
   std::string_view summary;  ///< one line for people
   Grid (*default_grid)(Reflectance reflectance);
-  bool fixed_grid;      ///< holds no grid but its default one
-  bool has_components;  ///< can hold the three components beside their total
-  bool has_options;     ///< half and compress
+  /// Throws InputError, in one line that starts with the file's name, where the format cannot hold
+  /// the table or has no such option.
+  void (*check)(const TableSpec& spec, const WriteOptions& options, const std::string& name);
 
-  /// Writes all of a table into the file; the caller commits. Throws InputError where the format
-  /// cannot hold the table, WorkError where writing fails.
+  /// Checks, and writes all of a table into the file; the caller commits. Throws WorkError where
+  /// writing fails.
   void (*write)(const Producer& producer, AtomicFile& file, const WriteOptions& options);
 
   /// Reads a whole file. Throws InputError, in one line that starts with the file's name. Cells

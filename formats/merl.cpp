@@ -32,21 +32,26 @@ const std::vector<Channel>& rgb_channels() {
 
 Grid merl_grid(Reflectance /*both are folded to 180 degrees*/) { return halfdiff3d(); }
 
-void write_merl(const Producer& producer, AtomicFile& file, const WriteOptions& options) {
-  const TableSpec& spec = producer.spec();
-  const std::string name = file.name().string();
+void check_merl(const TableSpec& spec, const WriteOptions& options, const std::string& name) {
+  const std::string grid = spec.has_grid() ? spec.grid().description() : "a list of pairs";
   if (!spec.has_grid() || spec.grid() != halfdiff3d()) {
-    throw InputError(name + ": MERL holds the grid " + halfdiff3d().description() + " only" +
-                     (spec.has_grid() ? ", not " + spec.grid().description() : ""));
+    throw InputError(name + ": the grid " + grid + " is not allowed: MERL holds " +
+                     halfdiff3d().description() + " only");
   }
   if (spec.channels != rgb_channels()) {
-    throw InputError(name + ": MERL holds R, G and B only; this table has " +
-                     std::to_string(spec.channels.size()) + " channels, the first named " +
-                     full_name(spec.channels.front()));
+    throw InputError(name + ": " + std::to_string(spec.channels.size()) + " channels (" +
+                     full_name(spec.channels.front()) + " ... " + full_name(spec.channels.back()) +
+                     ") are not allowed: MERL holds R, G and B only");
   }
-  if (options.half || options.compress)
-    throw InputError(name + ": MERL has no half or compressed flavour");
+  if (options.half || options.compress) {
+    throw InputError(name + ": --" + (options.half ? "half" : "compress") +
+                     " is not allowed: MERL holds plain doubles only");
+  }
+}
 
+void write_merl(const Producer& producer, AtomicFile& file, const WriteOptions& options) {
+  const TableSpec& spec = producer.spec();
+  check_merl(spec, options, file.name().string());
   file.reserve(kFileBytes);
   file.write_at(0, std::as_bytes(std::span(kSizes)));
   const std::size_t columns = spec.column_count();
@@ -120,9 +125,7 @@ Format merl_format() {
           .ending = ".binary",
           .summary = "isotropic 90x90x180 table of doubles; the mean over phi_h",
           .default_grid = merl_grid,
-          .fixed_grid = true,
-          .has_components = false,
-          .has_options = false,
+          .check = check_merl,
           .write = write_merl,
           .read = read_merl};
 }

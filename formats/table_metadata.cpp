@@ -73,7 +73,14 @@ Grid parse_grid_json(const nlohmann::json& json, const std::string& name) {
   }
   if (cells <= kMaxCells &&
       grid.axes.size() == (grid.kind == GridKind::kHalfDifference3d ? 3U : 4U)) {
-    if (grid == parse_grid(grid.description(), grid.axes.back().highest_deg)) return grid;
+    Grid known = parse_grid(grid.description(), grid.axes.back().highest_deg);
+    // A measured cloth need not look the same turned by half a turn.
+    constexpr double kWholeTurn = 360;
+    if (grid.kind == GridKind::kHalfDifference4d && grid.axes[1].highest_deg == kWholeTurn) {
+      known.axes[1].highest_deg = kWholeTurn;
+    }
+    const double phi_d_range = known.axes.back().highest_deg;
+    if (grid == known && (phi_d_range == kWholeTurn || phi_d_range == kWholeTurn / 2)) return grid;
   }
   throw InputError(name + ": /grid/axes: not the axes of a " + json["kind"].get<std::string>() +
                    " grid");

@@ -12,6 +12,8 @@
 namespace clothbrdf {
 namespace {
 
+constexpr const char* kSizes = "sizes are whole numbers from 1 to 1000000, joined by 'x'";
+
 constexpr double kDegree = std::numbers::pi / 180;
 
 struct Kind {
@@ -207,12 +209,11 @@ Grid parse_grid(const std::string& text, double phi_d_range_deg) {
     while (true) {
       int size = 0;
       const auto [next, error] = std::from_chars(at, end, size);
-      if (error != std::errc() || size < 1)
-        throw fail("sizes are whole numbers from 1, joined by 'x'");
+      if (error != std::errc() || size < 1 || size > kMaxAxisSize) throw fail(kSizes);
       sizes.push_back(size);
       cells *= size;
       if (next == end) break;
-      if (*next != 'x') throw fail("sizes are whole numbers from 1, joined by 'x'");
+      if (*next != 'x') throw fail(kSizes);
       at = next + 1;
     }
     if (sizes.size() != kind->axes.size()) {

@@ -77,6 +77,9 @@ Grid inout(int theta_i = 6, int phi_i = 48, int theta_o = 6, int phi_o = 48);
 /// InputError.
 Grid parse_grid(const std::string& text, double phi_d_range_deg = 180);
 
+/// Most cells along one axis; data-schemas/table.schema.json says the same.
+inline constexpr int kMaxAxisSize = 1000000;
+
 /// Most cells of a grid: what a 64-bit file offset holds of 12 double channels, and far beyond any
 /// disk here.
 inline constexpr double kMaxCells = 1e15;

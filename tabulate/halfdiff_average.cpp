@@ -65,8 +65,9 @@ std::vector<double> HalfDifferenceAverage::densities(double theta_h, std::size_t
     const Axis& axis = spec_.grid().axes[1];
     const int k = static_cast<int>(row % static_cast<std::size_t>(axis.size));
     const double rotation = reduce_turns(model_.material().rotation_deg);
-    paths_->mean_densities(sincos(theta_h), (axis.edge_deg(k) - rotation) * kRadian,
-                           (axis.edge_deg(k + 1) - rotation) * kRadian, density);
+    const double from = axis.edge_deg(k) - rotation;
+    const double width = std::min(180.0, axis.edge_deg(k + 1) - axis.edge_deg(k));  // the period
+    paths_->mean_densities(sincos(theta_h), from * kRadian, (from + width) * kRadian, density);
   }
   return density;
 }

@@ -1,15 +1,24 @@
 #include "tabulate/inout_points.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <numeric>
 #include <utility>
 
 namespace clothbrdf {
+namespace {
+
+// Azimuth differences kept for each phi_o, at most: beyond, rows have few weights in common.
+constexpr std::size_t kMostShared = 4;
+
+}  // namespace
 
 InOutPoints::InOutPoints(const TableSpec& spec, const ClothModel<double>& model)
     : spec_(spec),
       model_(model),
-      turn_steps_(std::lcm(spec.grid().axes[1].size, spec.grid().axes[3].size)) {}
+      turn_steps_(std::lcm<long long>(spec.grid().axes[1].size, spec.grid().axes[3].size)),
+      delta_count_(static_cast<std::size_t>(turn_steps_ / 2 + 1)),
+      shared_(delta_count_ <= kMostShared * static_cast<std::size_t>(spec.grid().axes[3].size)) {}
 
 void InOutPoints::fill_rows(std::size_t first_row, std::span<double> values) const {
   for (std::size_t at = 0; at < values.size(); at += spec_.row_values()) {
@@ -17,7 +26,14 @@ void InOutPoints::fill_rows(std::size_t first_row, std::span<double> values) con
   }
 }
 
-std::shared_ptr<const PathMatrix> InOutPoints::paths_for(int theta_i) const {
+std::size_t InOutPoints::delta_index(int phi_i, int phi_o) const {
+  const std::vector<Axis>& axes = spec_.grid().axes;
+  const long long step =
+      std::abs(phi_o * (turn_steps_ / axes[3].size) - phi_i * (turn_steps_ / axes[1].size));
+  return static_cast<std::size_t>(std::min(step, turn_steps_ - step));
+}
+
+std::shared_ptr<const PathMatrix> InOutPoints::shared_paths(int theta_i) const {
   const std::lock_guard lock(mutex_);
   for (const Entry& entry : recent_) {
     if (entry.theta_i == theta_i) return entry.paths;
@@ -25,9 +41,9 @@ std::shared_ptr<const PathMatrix> InOutPoints::paths_for(int theta_i) const {
   std::vector<double> cos_theta_d;
   const std::vector<Axis>& axes = spec_.grid().axes;
   for (int o = 0; o < axes[2].size; ++o) {
-    for (std::size_t step = 0; step < delta_count(); ++step) {
-      const DirectionPair pair{axes[0].node_deg(theta_i), 0, axes[2].node_deg(o),
-                               360.0 * static_cast<double>(step) / turn_steps_};
+    for (std::size_t step = 0; step < delta_count_; ++step) {
+      const double delta_deg = 360.0 * static_cast<double>(step) / static_cast<double>(turn_steps_);
+      const DirectionPair pair{axes[0].node_deg(theta_i), 0, axes[2].node_deg(o), delta_deg};
       cos_theta_d.push_back(pair_geometry(pair, 0.0).cos_theta_d);
     }
   }
@@ -36,32 +52,42 @@ std::shared_ptr<const PathMatrix> InOutPoints::paths_for(int theta_i) const {
   return recent_[1].paths;
 }
 
+std::shared_ptr<const PathMatrix> InOutPoints::row_paths(int theta_i, int phi_i) const {
+  std::vector<double> cos_theta_d;
+  const std::vector<Axis>& axes = spec_.grid().axes;
+  for (int o = 0; o < axes[2].size; ++o) {
+    for (int p = 0; p < axes[3].size; ++p) {
+      const DirectionPair pair{axes[0].node_deg(theta_i), axes[1].node_deg(phi_i),
+                               axes[2].node_deg(o), axes[3].node_deg(p)};
+      cos_theta_d.push_back(pair_geometry(pair, 0.0).cos_theta_d);
+    }
+  }
+  return std::make_shared<PathMatrix>(model_, std::move(cos_theta_d), 1);
+}
+
 void InOutPoints::fill_row(std::size_t row, std::span<double> values) const {
   const std::vector<Axis>& axes = spec_.grid().axes;
-  const int theta_i = static_cast<int>(row) / axes[1].size;
-  const int phi_i = static_cast<int>(row) % axes[1].size;
-  const std::shared_ptr<const PathMatrix> paths = paths_for(theta_i);
+  const auto phi_i_count = static_cast<std::size_t>(axes[1].size);
+  const auto theta_i = static_cast<int>(row / phi_i_count);
+  const auto phi_i = static_cast<int>(row % phi_i_count);
+  const std::shared_ptr<const PathMatrix> paths =
+      shared_ ? shared_paths(theta_i) : row_paths(theta_i, phi_i);
   const std::size_t columns = spec_.column_count();
   std::vector<double> density(paths->lobe_count());
   ChannelSums sums(model_, 1);
+  std::size_t column = 0;
   for (int theta_o = 0; theta_o < axes[2].size; ++theta_o) {
-    for (int phi_o = 0; phi_o < axes[3].size; ++phi_o) {
+    for (int phi_o = 0; phi_o < axes[3].size; ++phi_o, ++column) {
       const DirectionPair pair{axes[0].node_deg(theta_i), axes[1].node_deg(phi_i),
                                axes[2].node_deg(theta_o), axes[3].node_deg(phi_o)};
       const PairGeometry<double> g = pair_geometry(pair, model_.material().rotation_deg);
       const double factor = directional_factor(model_.material().reflectance, g.h_n, g.cos_theta_d,
                                                g.cos_theta_i, g.cos_theta_o);
-      int step =
-          std::abs(phi_o * (turn_steps_ / axes[3].size) - phi_i * (turn_steps_ / axes[1].size));
-      step = std::min(step, turn_steps_ - step);
+      const std::size_t index =
+          shared_ ? static_cast<std::size_t>(theta_o) * delta_count_ + delta_index(phi_i, phi_o)
+                  : column;
       paths->densities(g.h_weft, g.h_warp, g.h_n, density);
-      paths->sums(
-          density,
-          static_cast<std::size_t>(theta_o) * delta_count() + static_cast<std::size_t>(step),
-          sums.specular(), sums.internal());
-      const std::size_t column =
-          static_cast<std::size_t>(theta_o) * static_cast<std::size_t>(axes[3].size) +
-          static_cast<std::size_t>(phi_o);
+      paths->sums(density, index, sums.specular(), sums.internal());
       for (std::size_t c = 0; c < spec_.channels.size(); ++c) {
         const Channel& channel = spec_.channels[c];
         values[c * columns + column] =

@@ -77,7 +77,7 @@ TableSpec material_spec(const Material& material, const Effects& effects, const 
           {material, effects, std::string("clothbrdf ") + kVersion}};
 }
 
-std::unique_ptr<Producer> make_producer(const TableSpec& spec, int threads) {
+void check_producible(const TableSpec& spec) {
   if (!spec.provenance.material) throw InputError("the table names no material to compute it from");
   check_material(*spec.provenance.material);
   for (const Channel& channel : spec.channels) {
@@ -92,7 +92,14 @@ std::unique_ptr<Producer> make_producer(const TableSpec& spec, int threads) {
           "--cells average: not for a material of reflectance 'paper', where the mean over cells "
           "at the horizon diverges; use --cells point");
     }
+    if (spec.grid().kind != GridKind::kInOut && spec.grid().axes.back().highest_deg > 180) {
+      throw InputError("averages of a reciprocal table are made for phi_d from 0 to 180 degrees");
+    }
   }
+}
+
+std::unique_ptr<Producer> make_producer(const TableSpec& spec, int threads) {
+  check_producible(spec);
   return std::make_unique<ModelProducer>(spec, threads);
 }
 

@@ -12,10 +12,12 @@ namespace clothbrdf {
 TableSpec material_spec(const Material& material, const Effects& effects, const Grid& grid,
                         const CellRule& cells = {}, bool with_components = false);
 
+/// Throws InputError where make_producer cannot meet a spec: averages of the paper's convention
+/// (they diverge) or of a list of pairs, channels that the material lacks, no material.
+void check_producible(const TableSpec& spec);
+
 /// The values of a table made of the material that its provenance names, from the kernel that fits
-/// its samples. What all rows share is computed here, on `threads` threads. Throws InputError where
-/// the spec cannot be met: averages of the paper's convention (they diverge), of a list of pairs,
-/// channels that the material lacks, no material.
+/// its samples. What all rows share is computed here, on `threads` threads.
 std::unique_ptr<Producer> make_producer(const TableSpec& spec, int threads);
 
 }  // namespace clothbrdf

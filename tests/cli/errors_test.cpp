@@ -130,11 +130,13 @@ TEST_CASE("what a format cannot hold is refused with the option's name") {
   const std::string binary = (folder / "x.binary").string();
   check_refused({
       {tabulate(binary, {"--grid", "inout"}),
-       {"--grid: 'inout' is not allowed for " + binary, "halfdiff3d:90x90x180 only"}},
-      {tabulate(binary, {"--half"}), {"--half is not allowed for " + binary}},
-      {tabulate(binary, {"--compress"}), {"--compress is not allowed for " + binary}},
-      {tabulate(binary, {"--components"}), {"--components is not allowed for " + binary}},
-      {tabulate((folder / "x.exr").string(), {"-o", binary, "--half"}), {"for " + binary}},
+       {binary + ": the grid inout:6x48x6x48 is not allowed", "halfdiff3d:90x90x180 only"}},
+      {tabulate(binary, {"--half"}), {binary + ": --half is not allowed"}},
+      {tabulate(binary, {"--compress"}), {binary + ": --compress is not allowed"}},
+      {tabulate(binary, {"--components"}), {binary + ": 12 channels", "R, G and B only"}},
+      {tabulate((folder / "x.exr").string(), {"-o", binary, "--half"}), {binary + ": --half"}},
+      {tabulate((folder / "x.exr").string(), {"--grid", "inout:1x1x1000000x1000000"}),
+       {"is not allowed: its picture has 1000000000000 x 1 pixels"}},
   });
   CHECK(folder.entry_count() == 0);
 }
@@ -152,7 +154,7 @@ TEST_CASE("a bad value of an option is told with the option and what is allowed"
   refuse("--grid", {"", "foo", "in\bout", "inout3d"},
          "halfdiff3d[:THxTDxPD], halfdiff4d[:THxPHxTDxPD] or inout[:TIxPIxTOxPO]");
   refuse("--grid", {"inout:", "inout:0x1x1x1", "inout:1x1x1x-1", "inout:1x1x1x1 "},
-         "sizes are whole numbers from 1, joined by 'x'");
+         "sizes are whole numbers from 1");
   refuse("--grid", {"inout:1", "inout:1x1x1x1x1"}, "inout takes 4 sizes");
   refuse("--cells", {"", "mean", "average:", "average:0", "average:2", "average:x", "average:nan"},
          "point, average or average:REL");

@@ -164,7 +164,7 @@ TEST_CASE("a line of a file that is no pair is told with the file's name") {
   CHECK_THAT(outcome.err, ContainsSubstring(name + ": line 1: 'x'"));
 }
 
-TEST_CASE("--effects leaves in the components that it names, no others") {
+TEST_CASE("option --effects leaves in the components that it names, no others") {
   const json all = eval("30 0 45 180\n").at(0)["f_r"];
   const json zero = {0, 0, 0};
   for (const std::string on : {"specular", "internal", "diffuse"}) {

@@ -128,7 +128,7 @@ TEST_CASE("tabulate --dry-run writes nothing") {
 TEST_CASE("the material may follow -o") {
   const TemporaryFolder folder;
   const std::string exr = (folder / "silk.exr").string();
-  output_of({"tabulate", "--grid", "inout", "-o", exr, kSilk});
+  output_of({"tabulate", "-o", exr, kSilk, "--grid", "inout"});
   CHECK(std::filesystem::exists(exr));
 }
 
@@ -149,7 +149,7 @@ TEST_CASE("every option of tabulate reaches the table") {
   CHECK(other.channels.size() == 12);
 }
 
-TEST_CASE("--compress loses nothing, --half half of the bytes") {
+TEST_CASE("option --compress loses nothing, --half half of the bytes") {
   const TemporaryFolder folder;
   const auto write = [&](const std::string& name, const Arguments& options) {
     Arguments arguments = {"tabulate", kSilk, "--grid", "inout", "-o", (folder / name).string()};

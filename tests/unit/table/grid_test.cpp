@@ -91,7 +91,7 @@ TEST_CASE("a grid that is not one is refused with what is allowed") {
   for (const char* text :
        {"", "merl", "halfdiff3d:", "halfdiff3d:90x90", "halfdiff3d:90x90x180x2", "halfdiff3d:0x9x9",
         "halfdiff3d:-1x9x9", "halfdiff3d:9x9x9.5", "halfdiff3d:9x9x", "inout:1x2x3",
-        "halfdiff4d:1000000000x1000000000x1x1", "inout:99999999999x1x1x1"}) {
+        "halfdiff4d:1000000x1000000x1000000x1", "inout:99999999999x1x1x1", "inout:1000001x1x1x1"}) {
     INFO(text);
     CHECK_THROWS_WITH(parse_grid(text),
                       ContainsSubstring("--grid: '") && ContainsSubstring("is not allowed: "));

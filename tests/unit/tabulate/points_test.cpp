@@ -51,7 +51,8 @@ TEST_CASE("point values are those of the model at the nodes, component by compon
     const Material material = random_material(random, reflectance);
     const ClothModel<double> model(material);
     const double turn = reflectance == Reflectance::kPaper ? 360 : 180;
-    for (const Grid& grid : {halfdiff4d(5, 4, 6, 8, turn), inout(4, 6, 3, 4), inout(3, 6, 3, 6)}) {
+    for (const Grid& grid : {halfdiff4d(5, 4, 6, 8, turn), inout(4, 6, 3, 4), inout(3, 6, 3, 6),
+                             inout(2, 17, 2, 13)}) {
       const Table table =
           collect(*make_producer(material_spec(material, {}, grid, {}, true), 2), 2);
       for (std::size_t cell = 0; cell < grid.cell_count(); ++cell) {
