@@ -1,3 +1,5 @@
+#include <sys/stat.h>
+
 #include <chrono>
 #include <fstream>
 #include <string>
@@ -92,12 +94,16 @@ TEST_CASE("an output that is a directory or no regular file stays as it is") {
   CHECK(std::filesystem::is_directory(file));
 
   std::filesystem::remove(file);
-  std::filesystem::create_symlink("/dev/null", file);
+  const std::filesystem::path pipe =
+      folder / "pipe";  // never a device: as root, a wrong program would replace it
+  REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
+  std::filesystem::create_symlink(pipe, file);
   outcome = tabulate(file, {});
   CHECK(not_a_refusal(outcome, 1) == "");
   CHECK_THAT(outcome.err, ContainsSubstring("not a regular file"));
   CHECK(std::filesystem::is_symlink(file));
-  CHECK(folder.entry_count() == 1);
+  CHECK(std::filesystem::is_fifo(pipe));
+  CHECK(folder.entry_count() == 2);
 }
 
 TEST_CASE("a table takes the place of an older one") {

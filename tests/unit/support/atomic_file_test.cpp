@@ -281,9 +281,10 @@ TEST_CASE("where files must have names, a hidden one is written and renamed") {
     }
     check(folder.entry_count() == 1, "no hidden file is left");
     {
-      AtomicFile file(target);
-      AtomicFile moved(std::move(file));
-      check(folder.entry_count() == 2, "moved, there is still one hidden file");
+      std::optional<AtomicFile> file(target);
+      const AtomicFile moved(std::move(*file));
+      file.reset();
+      check(folder.entry_count() == 2, "what was moved keeps its hidden file");
     }
     check(folder.entry_count() == 1, "the moved file is removed");
     return check.first_failed();
