@@ -13,6 +13,9 @@ Effects parse_effects(const std::string& list) {
   for (const EffectName& effect : kEffectNames) {
     known.append(known.empty() ? "" : ", ").append(effect.name);
   }
+  const auto fail = [&](const std::string& what) {
+    return InputError("--effects: " + what + "; allowed: " + known + ", joined by ','");
+  };
   std::istringstream names(list);
   bool any = false;
   for (std::string name; std::getline(names, name, ',');) {
@@ -23,12 +26,9 @@ Effects parse_effects(const std::string& list) {
         any = found = true;
       }
     }
-    if (!found) {
-      throw InputError("--effects: '" + name + "' is not an effect; allowed: " + known +
-                       ", joined by ','");
-    }
+    if (!found) throw fail("'" + name + "' is not an effect");
   }
-  if (!any) throw InputError("--effects: names none; allowed: " + known + ", joined by ','");
+  if (!any) throw fail("names none");
   return effects;
 }
 
@@ -46,7 +46,7 @@ CellRule parse_cells(const std::string& text) {
   }
   throw InputError(
       "--cells: '" + text +
-      "' is not allowed: point, average or average:REL, REL the relative tolerance from 1e-9 to 1");
+      "' is not allowed: point, average or average:REL, REL the relative tolerance from 1e-6 to 1");
 }
 
 int parse_threads(const std::string& text) {

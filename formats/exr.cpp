@@ -205,7 +205,7 @@ TableSpec read_spec(const Imf::InputFile& in, const std::string& name) {
 
 Table read_exr(const std::filesystem::path& path) {
   const std::string name = path.string();
-  if (!std::filesystem::is_regular_file(path)) throw InputError(name + ": cannot read this file");
+  require_readable(path);
   try {
     Imf::InputFile in(path.c_str());
     TableSpec spec = read_spec(in, name);

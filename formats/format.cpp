@@ -1,7 +1,11 @@
 #include "formats/format.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cctype>
+#include <cerrno>
+#include <cstring>
 #include <string>
 
 #include "formats/exr.h"
@@ -13,6 +17,18 @@ namespace clothbrdf {
 std::span<const Format> formats() {
   static const Format kFormats[] = {merl_format(), exr_format()};
   return kFormats;
+}
+
+void require_readable(const std::filesystem::path& path) {
+  std::error_code ignored;
+  const std::string name = path.string();
+  if (!std::filesystem::exists(path, ignored)) throw InputError(name + ": there is no such file");
+  if (!std::filesystem::is_regular_file(path, ignored)) {
+    throw InputError(name + ": is no regular file; a table is needed");
+  }
+  if (::access(path.c_str(), R_OK) != 0) {
+    throw InputError(name + ": cannot be read: " + std::strerror(errno));
+  }
 }
 
 const Format* find_format(const std::filesystem::path& path) {

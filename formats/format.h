@@ -39,6 +39,10 @@ struct Format {
 
 std::span<const Format> formats();
 
+/// For readers: throws InputError, with the reason, where a file is not there, is no regular file
+/// or cannot be opened.
+void require_readable(const std::filesystem::path& path);
+
 /// The format that a file's ending stands for; null for an unknown ending.
 const Format* find_format(const std::filesystem::path& path);
 

@@ -78,9 +78,8 @@ void write_merl(const Producer& producer, AtomicFile& file, const WriteOptions& 
 }
 
 Table read_merl(const std::filesystem::path& path) {
+  require_readable(path);
   std::ifstream in(path, std::ios::binary | std::ios::ate);
-  if (!in || std::filesystem::is_directory(path))
-    throw InputError(path.string() + ": cannot read this file");
   const auto bytes = static_cast<std::uint64_t>(in.tellg());
   if (bytes < kHeaderBytes) {
     throw InputError(path.string() + ": " + std::to_string(bytes) +

@@ -27,7 +27,7 @@ struct Channel {
 /// What the value of a cell is.
 /// Averages are never asked for more closely than this: the closed forms and the quadrature carry
 /// it safely in double.
-inline constexpr double kTightestAverage = 1e-9;
+inline constexpr double kTightestAverage = 1e-6;
 
 struct CellRule {
   bool average =

@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "tabulate/factor_arc.h"
 #include "tabulate/quadrature.h"
 
 namespace clothbrdf {
@@ -37,7 +38,7 @@ class CellIntegrator {
  public:
   /// phi_d_edges: ascending, radians, from 0 to at most one beyond pi/2 (the rest of the circle is
   /// its mirror image).
-  CellIntegrator(std::vector<double> phi_d_edges, std::size_t channels, double tolerance);
+  CellIntegrator(const std::vector<double>& phi_d_edges, std::size_t channels, double tolerance);
 
   /// Adds the integrals over the box to sums[cell of phi_d].
   void add(const BoxFunctions& functions, std::span<CellSums> sums);
@@ -52,7 +53,7 @@ class CellIntegrator {
   bool agrees(const CellSums& weak, const CellSums& strong, const CellSums& whole) const;
   CellSums empty() const { return {0, std::vector<double>(channels_, 0.0)}; }
 
-  std::vector<double> edges_;
+  std::vector<FactorArc::Edge> edges_;
   std::vector<double> edge_cosines_;  // |cos|, descending to 0 at the right angle
   std::size_t channels_;
   double tolerance_;

@@ -16,44 +16,51 @@ double clamped_asin(double numerator, double denominator) {
 
 }  // namespace
 
-FactorArc::FactorArc(double theta_h, double theta_d)
-    : cos_sum_(std::cos(theta_h + theta_d)),
-      cos_difference_(std::cos(theta_h - theta_d)),
-      a_(std::cos(theta_h) * std::cos(theta_d)),
+FactorArc::Edge::Edge(double angle)
+    : chi(angle),
+      sin(std::sin(std::abs(angle))),
+      cos(std::cos(std::abs(angle))),
+      tan_half(std::tan((kRightAngle - std::abs(angle)) / 2)) {}
+
+FactorArc::FactorArc(const SinCos<double>& theta_h, const SinCos<double>& theta_d)
+    : cos_sum_(theta_h.cos * theta_d.cos - theta_h.sin * theta_d.sin),
+      cos_difference_(theta_h.cos * theta_d.cos + theta_h.sin * theta_d.sin),
+      a_(theta_h.cos * theta_d.cos),
       k_(std::sqrt(std::abs(cos_sum_) * cos_difference_)),
-      shadow_(std::cos(theta_h) / (2 * std::cos(theta_d))) {
-  const double b = std::sin(theta_h) * std::sin(theta_d);
+      shadow_(theta_h.cos / (2 * theta_d.cos)) {
+  const double b = theta_h.sin * theta_d.sin;
   chi_horizon_ = clamped_asin(a_, b);
   chi_shadow_ = std::min(chi_horizon_, clamped_asin(a_ - 0.25 / shadow_, b));
-  to_shadow_ = unshadowed(chi_shadow_);
-  phi_shadow_ = over_far_cosine(kRightAngle - chi_shadow_);
+  horizon_tan_half_ = Edge(chi_horizon_).tan_half;
+  const Edge shadow(chi_shadow_);
+  to_shadow_ = unshadowed(shadow);
+  phi_shadow_ = over_far_cosine(shadow.tan_half);
 }
 
-double FactorArc::unshadowed(double chi) const {
-  const double s = std::sin(chi);
-  const double c = std::cos(chi);
-  if (cos_sum_ > 0) return std::atan2(k_ * s, a_ * c) / (4 * a_ * k_);
-  if (cos_sum_ < 0) return std::atanh(std::min(k_ * s / (a_ * c), 1 - 1e-16)) / (4 * a_ * k_);
-  return s / (4 * a_ * a_ * c);
+double FactorArc::unshadowed(const Edge& edge) const {
+  if (cos_sum_ > 0) return std::atan2(k_ * edge.sin, a_ * edge.cos) / (4 * a_ * k_);
+  if (cos_sum_ < 0) {
+    return std::atanh(std::min(k_ * edge.sin / (a_ * edge.cos), 1 - 1e-16)) / (4 * a_ * k_);
+  }
+  return edge.sin / (4 * a_ * a_ * edge.cos);
 }
 
-double FactorArc::over_far_cosine(double phi) const {
-  const double s = std::sin(phi / 2);
-  const double c = std::cos(phi / 2);
+double FactorArc::over_far_cosine(double tan_half) const {
   const double root = std::sqrt(std::abs(cos_sum_) / cos_difference_);
-  if (cos_sum_ > 0) return 2 * std::atan2(root * s, c) / k_;
-  if (cos_sum_ < 0) return 2 * std::atanh(root * s / c) / k_;
-  return s / (c * a_);
+  if (cos_sum_ > 0) return 2 * std::atan(root * tan_half) / k_;
+  if (cos_sum_ < 0) return 2 * std::atanh(root * tan_half) / k_;
+  return tan_half / a_;
 }
 
-FactorArc::Integral FactorArc::from_right_angle(double chi) const {
-  const double sign = chi < 0 ? -1 : 1;
-  const double arc = std::min(std::abs(chi), chi_horizon_);
+FactorArc::Integral FactorArc::from_right_angle(const Edge& edge) const {
+  const double sign = edge.chi < 0 ? -1 : 1;
+  const double arc = std::min(std::abs(edge.chi), chi_horizon_);
   double factor = 0;
   if (arc <= chi_shadow_) {
-    factor = unshadowed(arc);
+    factor = arc < chi_shadow_ ? unshadowed(edge) : to_shadow_;
   } else {
-    factor = to_shadow_ + shadow_ * (phi_shadow_ - over_far_cosine(kRightAngle - arc));
+    const double tan_half = arc < chi_horizon_ ? edge.tan_half : horizon_tan_half_;
+    factor = to_shadow_ + shadow_ * (phi_shadow_ - over_far_cosine(tan_half));
   }
   return {sign * factor, sign * arc};
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "model/degrees.h"
+
 namespace clothbrdf {
 
 /// The microfacet directional factor along phi_d at fixed theta_h and theta_d: its integral is
@@ -9,30 +11,42 @@ namespace clothbrdf {
 /// B u < x / (2 h_n), else 1 / (4 (A - B u)(A + B u)).
 class FactorArc {
  public:
-  /// Radians, both in (0, pi/2).
-  FactorArc(double theta_h, double theta_d);
+  /// An angle along phi_d, counted from the right angle towards 0 (chi > 0) or pi (chi < 0), |chi|
+  /// <= pi/2, with the functions of it that all arcs need.
+  struct Edge {
+    explicit Edge(double chi);
+    double chi;
+    double sin;       ///< of |chi|
+    double cos;       ///< of |chi|
+    double tan_half;  ///< of half of phi = pi/2 - |chi|
+  };
 
-  /// Integral of the factor and length of the arc above the horizon, from phi_d = pi/2 towards 0
-  /// (chi > 0) or pi (chi < 0) over an angle |chi| <= pi/2. Odd in chi.
+  /// Both angles in (0, pi/2).
+  FactorArc(const SinCos<double>& theta_h, const SinCos<double>& theta_d);
+
+  /// Integral of the factor and length of the arc above the horizon, from the right angle to the
+  /// edge. Odd in chi.
   struct Integral {
     double factor;
     double length;
   };
-  Integral from_right_angle(double chi) const;
+  Integral from_right_angle(const Edge& edge) const;
 
  private:
-  double unshadowed(double chi) const;       // integral of 1 / (4 (A^2 - B^2 sin^2)) from 0 to chi
-  double over_far_cosine(double phi) const;  // integral of 1 / (A + B cos) from 0 to phi
+  double unshadowed(
+      const Edge& edge) const;  // integral of 1 / (4 (A^2 - B^2 sin^2)) up to the edge
+  double over_far_cosine(double tan_half) const;  // integral of 1 / (A + B cos) from 0 to phi
 
   double cos_sum_;         // A - B
   double cos_difference_;  // A + B
   double a_;
-  double k_;            // sqrt |A^2 - B^2|
-  double shadow_;       // h_n / (2 x)
-  double chi_horizon_;  // the arc above the horizon ends here
-  double chi_shadow_;   // the factor is shadowed beyond
-  double to_shadow_;    // unshadowed(chi_shadow_)
-  double phi_shadow_;   // over_far_cosine where shadow begins
+  double k_;                 // sqrt |A^2 - B^2|
+  double shadow_;            // h_n / (2 x)
+  double chi_horizon_;       // the arc above the horizon ends here
+  double horizon_tan_half_;  // tan(phi / 2) there
+  double chi_shadow_;        // the factor is shadowed beyond
+  double to_shadow_;         // unshadowed(chi_shadow_)
+  double phi_shadow_;        // over_far_cosine where shadow begins
 };
 
 }  // namespace clothbrdf
