@@ -24,14 +24,13 @@ struct Channel {
   bool operator==(const Channel&) const = default;
 };
 
-/// What the value of a cell is.
-/// Averages are never asked for more closely than this: the closed forms and the quadrature carry
-/// it safely in double.
+/// Averages are never asked for more closely than this: the adaptive rules would take hours.
 inline constexpr double kTightestAverage = 1e-6;
 
+/// What the value of a cell is: f_r at its node or, with `average`, the mean of f_r over its part
+/// above the horizon.
 struct CellRule {
-  bool average =
-      false;  ///< false: f_r at the node; true: mean of f_r over the part above the horizon
+  bool average = false;
   double tolerance = 1e-3;  ///< of averages: relative, for each cell
 
   bool operator==(const CellRule&) const = default;
