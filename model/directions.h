@@ -11,6 +11,14 @@ namespace clothbrdf {
 template <class T>
 using Vector3 = std::array<T, 3>;
 
+/// The unit vector at an elevation from the normal and an azimuth from x, degrees.
+template <class T>
+Vector3<T> direction(const T& theta_deg, const T& phi_deg) {
+  const SinCos<T> theta = sincosd(theta_deg);
+  const SinCos<T> phi = sincosd(phi_deg);
+  return {theta.sin * phi.cos, theta.sin * phi.sin, theta.cos};
+}
+
 /// A pair of directions in degrees, away from the cloth: wi to the light, wo to the eye. theta from
 /// the normal [0, 180], phi counter-clockwise from x, any finite value.
 template <class T>

@@ -44,12 +44,6 @@ Vector3<double> rotate_y(const Vector3<double>& v, const SinCos<double>& turn) {
   return {v[0] * turn.cos + v[2] * turn.sin, v[1], v[2] * turn.cos - v[0] * turn.sin};
 }
 
-Vector3<double> direction(double theta_deg, double phi_deg) {
-  const SinCos<double> theta = sincosd(theta_deg);
-  const SinCos<double> phi = sincosd(phi_deg);
-  return {theta.sin * phi.cos, theta.sin * phi.sin, theta.cos};
-}
-
 double elevation_deg(const Vector3<double>& v) {
   return std::atan2(std::hypot(v[0], v[1]), v[2]) / kDegree;
 }

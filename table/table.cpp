@@ -26,13 +26,8 @@ void Table::fill_pairs(std::span<const DirectionPair> pairs, std::span<double> v
     const DirectionPair& pair = pairs[p];
     std::optional<std::size_t> cell;
     if (spec_.has_grid()) {
-      const auto unit = [](double theta, double phi) -> Vector3<double> {
-        const SinCos<double> t = sincosd(theta);
-        const SinCos<double> f = sincosd(phi);
-        return {t.sin * f.cos, t.sin * f.sin, t.cos};
-      };
-      const Vector3<double> wi = unit(pair.theta_i, pair.phi_i);
-      const Vector3<double> wo = unit(pair.theta_o, pair.phi_o);
+      const Vector3<double> wi = direction(pair.theta_i, pair.phi_i);
+      const Vector3<double> wo = direction(pair.theta_o, pair.phi_o);
       if (wi[2] > 0 && wo[2] > 0) cell = spec_.grid().cell_of(wi, wo);
     } else {
       const auto found = std::find(spec_.pairs().begin(), spec_.pairs().end(), pair);

@@ -16,11 +16,11 @@ double clamped_asin(double numerator, double denominator) {
 
 }  // namespace
 
-FactorArc::Edge::Edge(double angle)
-    : chi(angle),
-      sin(std::sin(std::abs(angle))),
-      cos(std::cos(std::abs(angle))),
-      tan_half(std::tan((kRightAngle - std::abs(angle)) / 2)) {}
+FactorArc::Edge::Edge(double signed_chi)
+    : chi(signed_chi),
+      sin(std::sin(std::abs(signed_chi))),
+      cos(std::cos(std::abs(signed_chi))),
+      tan_half(std::tan((kRightAngle - std::abs(signed_chi)) / 2)) {}
 
 FactorArc::FactorArc(const SinCos<double>& theta_h, const SinCos<double>& theta_d)
     : cos_sum_(theta_h.cos * theta_d.cos - theta_h.sin * theta_d.sin),

@@ -14,7 +14,7 @@ class FactorArc {
   /// An angle along phi_d, counted from the right angle towards 0 (chi > 0) or pi (chi < 0), |chi|
   /// <= pi/2, with the functions of it that all arcs need.
   struct Edge {
-    explicit Edge(double chi);
+    explicit Edge(double signed_chi);
     double chi;
     double sin;       ///< of |chi|
     double cos;       ///< of |chi|

@@ -46,13 +46,8 @@ TEST_CASE("the cell of a pair is the one that MERL's own lookup takes") {
   const Grid grid = halfdiff3d();
   for (int n = 0; n < 5000; ++n) {
     const DirectionPair p = random.pair();
-    const auto unit = [](double theta, double phi) -> Vector3<double> {
-      const SinCos<double> t = sincosd(theta);
-      const SinCos<double> f = sincosd(phi);
-      return {t.sin * f.cos, t.sin * f.sin, t.cos};
-    };
-    const Vector3<double> in = unit(p.theta_i, p.phi_i);
-    const Vector3<double> out = unit(p.theta_o, p.phi_o);
+    const Vector3<double> in = direction(p.theta_i, p.phi_i);
+    const Vector3<double> out = direction(p.theta_o, p.phi_o);
     Vector3<double> half{};
     double length = 0;
     for (std::size_t k = 0; k < 3; ++k) half[k] = (in[k] + out[k]) / 2;

@@ -34,10 +34,8 @@ TEST_CASE("a table answers a pair of directions with the cell that holds it, 0 b
   const std::vector<DirectionPair> pairs = {{30, 10, 20, 60}, {120, 0, 20, 0}};
   std::vector<double> values(4);
   table.fill_pairs(pairs, values);
-  const Vector3<double> wi = {sincosd(30.0).sin * sincosd(10.0).cos,
-                              sincosd(30.0).sin * sincosd(10.0).sin, sincosd(30.0).cos};
-  const Vector3<double> wo = {sincosd(20.0).sin * sincosd(60.0).cos,
-                              sincosd(20.0).sin * sincosd(60.0).sin, sincosd(20.0).cos};
+  const Vector3<double> wi = direction(30.0, 10.0);
+  const Vector3<double> wo = direction(20.0, 60.0);
   const std::size_t cell = table.spec().grid().cell_of(wi, wo).value();
   CHECK(values[0] == table.value(cell, 0));
   CHECK(values[1] == table.value(cell, 1));
