@@ -68,9 +68,10 @@ Json table_info(const std::string& file, const Format& format, const Table& tabl
   }
   std::size_t valid = 0;
   for (std::size_t cell = 0; cell < spec.cell_count(); ++cell) valid += table.valid(cell) ? 1 : 0;
-  info["cells"] = {{"all", spec.cell_count()},
-                   {"valid", valid},
-                   {"rule", spec.cells.average ? "average" : "point"}};
+  info["cells"] = {{"all", spec.cell_count()}, {"valid", valid}};
+  if (!spec.provenance.program.empty()) {  // other files do not say
+    info["cells"]["rule"] = spec.cells.average ? "average" : "point";
+  }
   info["channels"] = Json::array();
   for (std::size_t c = 0; c < spec.channels.size(); ++c) {
     const ChannelSummary s = summarise(table, c);
@@ -94,30 +95,21 @@ Json table_info(const std::string& file, const Format& format, const Table& tabl
   return info;
 }
 
-Json yarn_info(const Material& material, const Yarn& yarn) {
+// The colour of the light without direction, 0 to 1 for each channel.
+Json yarn_colour(const Material& material, const Yarn& yarn) {
   Json colour = Json::array();
-  for (const double absorption : yarn.absorption)
+  for (const double absorption : yarn.absorption) {
     colour.push_back(diffuse_colour(absorption, material.diffuse_path));
-  return {{"kind", yarn.lobe_axes[0] * 2 < yarn.lobe_axes[1] ? "filament (narrow along the yarn)"
-                                                             : "span (round)"},
-          {"lobe_axes", yarn.lobe_axes},
-          {"layers", yarn.layers},
-          {"refractive_index", yarn.refractive_index},
-          {"scatter", yarn.scatter},
-          {"absorption", yarn.absorption},
-          {"diffuse_colour", colour}};
+  }
+  return colour;
 }
 
 Json material_info(const std::string& file, const Material& material) {
-  Json info = {{"file", file}, {"material", material.name}};
-  info["reflectance"] = material.reflectance == Reflectance::kMicrofacet ? "microfacet" : "paper";
+  Json info = {{"file", file}, {"channels", material.channel_count()}};
   if (material.reflectance == Reflectance::kPaper) info["note"] = kNotReciprocal;
-  info["paths"] = material.paths == Paths::kAll ? "all" : "single";
-  info["channels"] = material.channel_count();
-  info["warp_fraction"] = material.warp_fraction;
-  info["rotation_deg"] = material.rotation_deg;
-  info["warp"] = yarn_info(material, material.warp);
-  info["weft"] = yarn_info(material, material.weft);
+  info["material"] = Json::parse(material_to_json(material));
+  info["diffuse_colour"] = {{"warp", yarn_colour(material, material.warp)},
+                            {"weft", yarn_colour(material, material.weft)}};
   return info;
 }
 

@@ -67,6 +67,12 @@ Output plan_output(const TabulateOptions& options, const Material& material,
   return {name, &format, std::move(spec), what_is_lost(material, grid)};
 }
 
+bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
+  std::error_code ignored;
+  return a == b || std::filesystem::weakly_canonical(a, ignored) ==
+                       std::filesystem::weakly_canonical(b, ignored);
+}
+
 std::string with_commas(std::uint64_t number) {
   std::string digits = std::to_string(number);
   for (std::size_t at = digits.size(); at > 3;) digits.insert(at -= 3, ",");
@@ -106,7 +112,7 @@ void tabulate(const TabulateOptions& options) {
   std::vector<Output> outputs;
   for (const std::string& name : options.outputs) {
     if (std::any_of(outputs.begin(), outputs.end(),
-                    [&](const Output& other) { return other.path == name; })) {
+                    [&](const Output& other) { return same_file(other.path, name); })) {
       throw InputError("--output: " + name + " is given twice");
     }
     outputs.push_back(plan_output(options, material, name));

@@ -10,8 +10,10 @@
 #include <ImfStringAttribute.h>
 #include <half.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <fstream>
 #include <limits>
 #include <string>
 #include <utility>
@@ -40,6 +42,29 @@ class AtomicOStream final : public Imf::OStream {
  private:
   AtomicFile& file_;
   std::uint64_t position_ = 0;
+};
+
+// A file that remembers how far it was read: nothing may follow a table's last line.
+class CountingIStream final : public Imf::IStream {
+ public:
+  explicit CountingIStream(const std::filesystem::path& path)
+      : Imf::IStream(path.c_str()), in_(path, std::ios::binary) {}
+  bool read(char bytes[], int count) override {
+    if (!in_.read(bytes, count)) throw Iex::InputExc("the file is cut off");
+    farthest_ = std::max(farthest_, tellg());
+    return in_.peek() != std::ifstream::traits_type::eof();
+  }
+  std::uint64_t tellg() override { return static_cast<std::uint64_t>(in_.tellg()); }
+  void seekg(std::uint64_t position) override {
+    in_.clear();
+    in_.seekg(static_cast<std::streamoff>(position));
+  }
+  void clear() override { in_.clear(); }
+  std::uint64_t farthest() const { return farthest_; }
+
+ private:
+  std::ifstream in_;
+  std::uint64_t farthest_ = 0;
 };
 
 struct PictureSize {
@@ -207,7 +232,8 @@ Table read_exr(const std::filesystem::path& path) {
   const std::string name = path.string();
   require_readable(path);
   try {
-    Imf::InputFile in(path.c_str());
+    CountingIStream stream(path);
+    Imf::InputFile in(stream);
     TableSpec spec = read_spec(in, name);
     const PictureSize size = picture_size(spec);
     // Compression may shrink zeros a thousandfold, not more: a header cannot ask for memory that no
@@ -224,6 +250,9 @@ Table read_exr(const std::filesystem::path& path) {
       in.readPixels(line, line + static_cast<int>(size.lines_per_row) - 1);
       std::copy(buffer.samples().begin(), buffer.samples().end(),
                 values.begin() + static_cast<std::ptrdiff_t>(row * spec.row_values()));
+    }
+    if (stream.farthest() != std::filesystem::file_size(path)) {
+      throw InputError(name + ": bytes follow the end of the picture");
     }
     std::vector<std::uint8_t> valid = cells_above_horizon(spec);
     return {std::move(spec), std::move(values), std::move(valid)};

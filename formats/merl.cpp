@@ -103,6 +103,7 @@ Table read_merl(const std::filesystem::path& path) {
   for (std::size_t cell = 0; cell < kCells; ++cell) {
     valid[cell] = spec.grid().any_above_horizon(cell) ? 1 : 0;
   }
+  std::vector<std::uint8_t> all_zero(kCells, 1);
   std::vector<double> plane(kCells);
   const std::size_t columns = spec.column_count();
   for (std::size_t c = 0; c < 3; ++c) {
@@ -112,7 +113,12 @@ Table read_merl(const std::filesystem::path& path) {
     for (std::size_t cell = 0; cell < kCells; ++cell) {
       values[(cell / columns * 3 + c) * columns + cell % columns] = plane[cell] / kStored[c];
       if (plane[cell] < 0) valid[cell] = 0;  // MERL's mark of a cell that was not measured
+      if (plane[cell] != 0) all_zero[cell] = 0;
     }
+  }
+  // Point values are 0 where the cell's centre is below the horizon: nothing was said of them.
+  for (std::size_t cell = 0; cell < kCells; ++cell) {
+    if (all_zero[cell] != 0 && !spec.grid().node_above_horizon(cell)) valid[cell] = 0;
   }
   return {std::move(spec), std::move(values), std::move(valid)};
 }

@@ -47,6 +47,10 @@ T value_of(const Name<T> (&names)[N], const std::string& name) {
       ->value;
 }
 
+const char* convention_of(const Material& material) {
+  return material.reflectance == Reflectance::kMicrofacet ? "microfacet" : "paper";
+}
+
 Json axis_json(const Axis& axis) {
   return {{"name", axis.name},
           {"unit", "deg"},
@@ -92,8 +96,7 @@ std::string table_metadata(const TableSpec& spec) {
   const Provenance& from = spec.provenance;
   Json json = {{"version", 1}, {"program", from.program}, {"value", kValue}};
   if (from.material) {
-    json["convention"] =
-        from.material->reflectance == Reflectance::kMicrofacet ? "microfacet" : "paper";
+    json["convention"] = convention_of(*from.material);
   }
   json["grid"] = {{"kind", name_of(kKinds, spec.grid().kind)}, {"axes", Json::array()}};
   for (const Axis& axis : spec.grid().axes) json["grid"]["axes"].push_back(axis_json(axis));
@@ -132,6 +135,12 @@ TableSpec parse_table_metadata(std::string_view text, const std::string& name) {
   spec.provenance.program = json["program"].get<std::string>();
   if (json.contains("material"))
     spec.provenance.material = parse_material(json["material"].dump(), name + ": /material");
+  if (json.contains("convention")) {
+    const auto& material = spec.provenance.material;
+    if (!material || json["convention"] != convention_of(*material)) {
+      throw InputError(name + ": /convention: contradicts the material");
+    }
+  }
   return spec;
 }
 

@@ -41,13 +41,16 @@ AtomicFile::AtomicFile(const std::filesystem::path& target) : name_(target), tar
     if (error) fail("cannot follow the link", error.value());
   }
   struct stat status {};
-  if (::stat(target_.c_str(), &status) == 0) {
+  const bool replaces = ::stat(target_.c_str(), &status) == 0;
+  if (replaces) {
     if (S_ISDIR(status.st_mode)) fail("cannot write", EISDIR);
     if (!S_ISREG(status.st_mode))
       throw WorkError(name_.string() + ": cannot write: not a regular file");
   }
   open_anonymous();
   if (fd_ < 0) open_hidden();
+  // A file that others must not read stays so; not where the system refuses.
+  if (replaces) static_cast<void>(::fchmod(fd_, status.st_mode & 0777));
 }
 
 AtomicFile::AtomicFile(AtomicFile&& other) noexcept

@@ -7,11 +7,12 @@
 
 namespace clothbrdf {
 
-/// A file that appears under its name only when it is whole. Until commit() the bytes sit in a file
-/// without a name in the same folder (where the file system cannot do that, in a hidden file that
-/// the destructor removes), so a killed process leaves nothing behind and an old file of the same
-/// name stays as it was. There is no fsync: it is not safe against power loss. All members throw
-/// WorkError, in one line that starts with the file's name.
+/// A file that appears under its name only when it is whole; an old file of that name stays as it
+/// was until then, and passes on its permissions. The bytes sit in a file without a name in the
+/// same folder, which goes with the process, however that ends. Where the file system knows no such
+/// files, they sit in a hidden one beside it, which the destructor removes, but not a process that
+/// is killed. There is no fsync: it is not safe against power loss. All members throw WorkError, in
+/// one line that starts with the file's name.
 class AtomicFile {
  public:
   /// The target must be a regular file or not exist; a symbolic link is followed.

@@ -25,10 +25,14 @@ void stream_rows(const Producer& producer, int threads, const RowFunction& take,
                  const RowFunction& prepare) {
   const TableSpec& spec = producer.spec();
   const std::size_t rows = spec.row_count();
-  const std::size_t rows_per_block = std::max<std::size_t>(1, kBlockValues / spec.row_values());
+  // Small tables can be the slowest ones: enough blocks for all threads, too.
+  constexpr std::size_t kBlocksPerThread = 8;
+  const std::size_t rows_per_block = std::max<std::size_t>(
+      1, std::min(kBlockValues / spec.row_values(),
+                  rows / (kBlocksPerThread * static_cast<std::size_t>(threads))));
 
   // A ring of buffers: at most so many blocks are under way, and they are taken in order.
-  const std::size_t tokens = static_cast<std::size_t>(threads) + 1;
+  const std::size_t tokens = 2 * static_cast<std::size_t>(threads) + 1;
   std::vector<Block> ring(tokens);
   std::size_t next_row = 0;
   std::size_t next_slot = 0;

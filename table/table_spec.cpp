@@ -1,13 +1,17 @@
 #include "table/table_spec.h"
 
-#include <charconv>
+#include <algorithm>
+
+#include "model/parameters.h"
 
 namespace clothbrdf {
 namespace {
 
-std::string shortest(double value) {
-  char buffer[32];
-  return {buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr};
+// "550nm"; "400_5nm" for 400.5, since picture formats read a dot as the end of a layer's name.
+std::string wavelength_name(double wavelength_nm) {
+  std::string name = number_text(wavelength_nm) + "nm";
+  std::replace(name.begin(), name.end(), '.', '_');
+  return name;
 }
 
 }  // namespace
@@ -18,7 +22,7 @@ std::vector<Channel> material_channels(const Material& material, bool with_compo
   for (const Part part : {Part::kTotal, Part::kSpecular, Part::kInternal, Part::kDiffuse}) {
     for (std::size_t c = 0; c < material.channel_count(); ++c) {
       channels.push_back(
-          {material.wavelengths_nm.empty() ? kRgb[c] : shortest(material.wavelengths_nm[c]) + "nm",
+          {material.wavelengths_nm.empty() ? kRgb[c] : wavelength_name(material.wavelengths_nm[c]),
            part, c});
     }
     if (!with_components) break;

@@ -6,7 +6,8 @@
 namespace clothbrdf {
 namespace {
 
-constexpr std::size_t kMostParts = 200000;
+// The two rules can agree by chance: they must agree ten times better than asked.
+constexpr double kSafety = 0.1;
 
 struct Part {
   Box4 box;
@@ -111,12 +112,27 @@ std::vector<double> total(const std::vector<Part>& parts, std::vector<double> Pa
 
 }  // namespace
 
-std::vector<double> integrate4(const Integrand4& integrand, const Box4& box, std::size_t count,
-                               double tolerance) {
+std::optional<std::vector<double>> integrate4(const Integrand4& integrand, const Box4& box,
+                                              std::size_t count, double tolerance,
+                                              const CoarseVariable& coarse) {
   GenzMalik rule(integrand, count);
-  std::vector<Part> parts = {rule.apply(box)};
-  std::vector<double> whole = parts[0].integral;
-  std::vector<double> error = parts[0].error;
+  std::vector<Part> parts;
+  std::vector<Box4> open = {box};
+  while (!open.empty()) {
+    Box4 lower = open.back();
+    open.pop_back();
+    if (parts.size() + open.size() > kMostParts) return std::nullopt;
+    if (const std::optional<std::size_t> v = coarse(lower)) {
+      Box4 upper = lower;
+      lower.high[*v] = upper.low[*v] = (lower.low[*v] + lower.high[*v]) / 2;
+      open.push_back(lower);
+      open.push_back(upper);
+    } else {
+      parts.push_back(rule.apply(lower));
+    }
+  }
+  std::vector<double> whole = total(parts, &Part::integral, count);
+  std::vector<double> error = total(parts, &Part::error, count);
   const auto rate = [&](Part& part) {
     part.worst = 0;
     for (std::size_t c = 0; c < count; ++c) {
@@ -126,11 +142,14 @@ std::vector<double> integrate4(const Integrand4& integrand, const Box4& box, std
   const auto by_worst = [](const Part& a, const Part& b) { return a.worst < b.worst; };
   const auto done = [&] {
     for (std::size_t c = 0; c < count; ++c) {
-      if (error[c] > tolerance * std::abs(whole[c])) return false;
+      if (error[c] > kSafety * tolerance * std::abs(whole[c])) return false;
     }
     return true;
   };
-  while (!done() && parts.size() < kMostParts) {
+  for (Part& part : parts) rate(part);
+  std::make_heap(parts.begin(), parts.end(), by_worst);
+  while (!done()) {
+    if (parts.size() > kMostParts) return std::nullopt;
     std::pop_heap(parts.begin(), parts.end(), by_worst);
     const Part worst = std::move(parts.back());
     parts.pop_back();

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -16,10 +18,18 @@ struct Box4 {
 /// Writes the values of a vector of functions at a point.
 using Integrand4 = std::function<void(const std::array<double, 4>& at, std::span<double> values)>;
 
+/// The variable along which a part must be halved before its rule can be trusted; none where it
+/// can.
+using CoarseVariable = std::function<std::optional<std::size_t>(const Box4& part)>;
+
 /// Integrals of `count` positive functions over a box, each to a relative tolerance: adaptive
 /// cubature that halves the worst part along its roughest variable, with the rule of degree 7 and
-/// its companion of degree 5 by Genz and Malik (1980).
-std::vector<double> integrate4(const Integrand4& integrand, const Box4& box, std::size_t count,
-                               double tolerance);
+/// its companion of degree 5 by Genz and Malik (1980). None where that takes more than kMostParts
+/// parts.
+std::optional<std::vector<double>> integrate4(const Integrand4& integrand, const Box4& box,
+                                              std::size_t count, double tolerance,
+                                              const CoarseVariable& coarse);
+
+inline constexpr std::size_t kMostParts = 200000;
 
 }  // namespace clothbrdf

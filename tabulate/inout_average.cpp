@@ -4,7 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "tabulate/cubature.h"
+#include "model/parameters.h"
+#include "support/errors.h"
 #include "tabulate/path_panels.h"
 
 namespace clothbrdf {
@@ -36,6 +37,9 @@ struct InOutAverage::Workspace {
 
 InOutAverage::InOutAverage(const TableSpec& spec, const ClothModel<double>& model, int threads)
     : spec_(spec), model_(model) {
+  for (const PreparedYarn<double>& y : model.yarns()) {
+    for (const double axis : y.yarn.lobe_axes) narrowest_axis_ = std::min(narrowest_axis_, axis);
+  }
   const double tolerance = kInterpolationShare * spec.cells.tolerance;
   while (true) {
     const PanelCosine cosine = [this](double at) {
@@ -73,6 +77,29 @@ void InOutAverage::directional(const std::array<double, 4>& at, Workspace& work,
   }
 }
 
+// A part is coarse where it is wider than the lobes are there: their peak, at the normal, is as
+// wide as the narrowest axis, and farther from it they change over angles like the half vector's
+// own tilt. The azimuths' period must be resolved, too.
+std::optional<std::size_t> InOutAverage::coarse_variable(const Box4& part) const {
+  constexpr double kWidest = 0.8;
+  std::array<double, 4> width{};
+  std::array<double, 4> middle{};
+  for (std::size_t a = 0; a < 4; ++a) {
+    width[a] = part.high[a] - part.low[a];
+    middle[a] = (part.high[a] + part.low[a]) / 2;
+  }
+  width[1] *= std::sin(part.high[0]);
+  width[3] *= std::sin(part.high[2]);
+  const Vector3<double> h = {
+      std::sin(middle[0]) * std::cos(middle[1]) + std::sin(middle[2]) * std::cos(middle[3]),
+      std::sin(middle[0]) * std::sin(middle[1]) + std::sin(middle[2]) * std::sin(middle[3]),
+      std::cos(middle[0]) + std::cos(middle[2])};
+  const double tilt = std::atan2(std::hypot(h[0], h[1]), h[2]);
+  const auto widest = std::max_element(width.begin(), width.end());
+  if (*widest <= std::min(kWidest, 2 * (tilt + narrowest_axis_))) return std::nullopt;
+  return static_cast<std::size_t>(widest - width.begin());
+}
+
 void InOutAverage::fill_rows(std::size_t first_row, std::span<double> values) const {
   Workspace work(model_, *paths_);
   const std::size_t columns = spec_.column_count();
@@ -89,12 +116,19 @@ void InOutAverage::fill_rows(std::size_t first_row, std::span<double> values) co
       measure *=
           elevation ? std::cos(box.low[a]) - std::cos(box.high[a]) : box.high[a] - box.low[a];
     }
-    const std::vector<double> integral = integrate4(
+    const std::optional<std::vector<double>> integral = integrate4(
         [&](const std::array<double, 4>& at, std::span<double> f) { directional(at, work, f); },
-        box, channels, spec_.cells.tolerance);
+        box, channels, spec_.cells.tolerance,
+        [&](const Box4& part) { return coarse_variable(part); });
+    if (!integral) {
+      throw WorkError("--cells average: the lobes are too narrow for cells of " +
+                      spec_.grid().description() + " at a relative tolerance of " +
+                      number_text(spec_.cells.tolerance) +
+                      "; take a finer grid, a looser tolerance or --cells point");
+    }
     for (std::size_t c = 0; c < channels; ++c) {
       values[(i / columns * channels + c) * columns + i % columns] =
-          integral[c] / measure + work.sums.constant(spec_.channels[c]);
+          (*integral)[c] / measure + work.sums.constant(spec_.channels[c]);
     }
   }
 }

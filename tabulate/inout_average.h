@@ -1,8 +1,10 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "model/reflectance.h"
+#include "tabulate/cubature.h"
 #include "tabulate/kernel.h"
 #include "tabulate/path_matrix.h"
 
@@ -22,8 +24,11 @@ class InOutAverage final : public Kernel {
   void directional(const std::array<double, 4>& at, Workspace& work,
                    std::span<double> values) const;
 
+  std::optional<std::size_t> coarse_variable(const Box4& part) const;
+
   const TableSpec& spec_;
   const ClothModel<double>& model_;
+  double narrowest_axis_ = 1;
   std::size_t panels_ = 16;
   std::unique_ptr<const PathMatrix> paths_;
 };

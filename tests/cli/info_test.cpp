@@ -32,21 +32,10 @@ TEST_CASE("info tells of a material what its yarns are") {
   const std::string file = preset("silk").string();
   const json told = info_json(file);
   CHECK(told["file"] == file);
-  CHECK(told["material"] == "silk");
-  CHECK(told["reflectance"] == "microfacet");
-  CHECK(told["paths"] == "all");
   CHECK(told["channels"] == 3);
-  CHECK(told["warp_fraction"] == 0.5);
-  CHECK(told["rotation_deg"] == 0);
-  for (const char* yarn : {"warp", "weft"}) {
-    CHECK_THAT(told[yarn]["kind"].get<std::string>(), ContainsSubstring("filament"));
-    CHECK(told[yarn]["lobe_axes"] == json({0.1, 0.4}));
-    CHECK(told[yarn]["layers"] == 4);
-    CHECK(told[yarn]["absorption"] == json({0.05, 0.3, 0.6}));
-    CHECK(told[yarn]["diffuse_colour"].size() == 3);
-  }
-  CHECK(!told.contains("note"));
-  CHECK_THAT(info({file}), ContainsSubstring("\nwarp:\n  kind: filament"));
+  CHECK(told["material"] == json::parse(read_file(file)));
+  for (const char* yarn : {"warp", "weft"}) CHECK(told["diffuse_colour"][yarn].size() == 3);
+  CHECK_THAT(info({file}), ContainsSubstring("\n  weights:\n    specular: 1\n"));
 }
 
 TEST_CASE("info says of the paper's convention what it is not") {

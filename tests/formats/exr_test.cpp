@@ -161,6 +161,11 @@ TEST_CASE("an EXR picture that is not one of our tables is refused in one line")
   const std::string whole = read_file(folder / "whole.exr");
   write_file(folder / "cut.exr", whole.substr(0, whole.size() - 100));
   refused("cut.exr", "");
+  write_file(folder / "more_bytes.exr", whole + "x");
+  refused("more_bytes.exr", "bytes follow the end of the picture");
+  write_table(preset_table("silk", halfdiff4d(5, 4, 6, 8)), folder / "zip.exr", {.compress = true});
+  write_file(folder / "zip.exr", read_file(folder / "zip.exr") + std::string(1000, '\0'));
+  refused("zip.exr", "bytes follow the end of the picture");
   CHECK_THROWS_AS(read_exr(folder / "absent.exr"), InputError);
   CHECK_THROWS_AS(read_exr(folder.path()), InputError);
 }
