@@ -42,8 +42,8 @@ TEST_CASE("the presets reflect no more than they receive, up to 85 degrees") {
                                     inout(kThetas, kAzimuths, kThetas, kAzimuths)),
                       2);
     double largest = 0;
-    for (const std::size_t theta_i : {0, 60, 85}) {
-      for (const std::size_t phi_i : {0, 23, 45})
+    for (const std::size_t theta_i : {0U, 60U, 85U}) {
+      for (const std::size_t phi_i : {0U, 23U, 45U})
         largest = std::fmax(largest, albedo(*producer, theta_i, phi_i));
     }
     std::cout << name << ": largest directional albedo up to 85 degrees " << largest << '\n';

@@ -222,7 +222,7 @@ TEST_CASE("averages shrink to the point value with the cell") {
   const std::size_t row = 100 * 90 + 17;
   fine_producer->fill_rows(row, mean);
   point_producer->fill_rows(row, point);
-  for (const std::size_t d : {10, 100, 200}) {
+  for (const std::size_t d : {10U, 100U, 200U}) {
     const std::size_t at = d * 301 + 150;
     CHECK(std::abs(mean[at] / point[at] - 1) < 1e-3);
   }
