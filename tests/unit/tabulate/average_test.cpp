@@ -16,8 +16,6 @@
 namespace clothbrdf::test {
 namespace {
 
-constexpr double kRadian = std::numbers::pi / 180;
-
 // A cloth whose evaluation is quick: few lobes.
 Material quick_material(RandomInputs& random, double lowest_axis) {
   MaterialRanges ranges;
