@@ -127,13 +127,13 @@ class RowBuffer {
 
 template <class Sample>
 void write_lines(const Producer& producer, Imf::OutputFile& out, Imf::PixelType type,
-                 const std::string& name, int threads) {
+                 const std::string& name, Workers workers) {
   const TableSpec& spec = producer.spec();
   const PictureSize size = picture_size(spec);
   const double largest =
       type == Imf::HALF ? double{HALF_MAX} : double{std::numeric_limits<float>::max()};
   RowBuffer<Sample> buffer(spec, size, type);
-  stream_rows(producer, threads, [&](std::size_t row, std::span<double> values) {
+  stream_rows(producer, workers, [&](std::size_t row, std::span<double> values) {
     for (; !values.empty(); ++row, values = values.subspan(spec.row_values())) {
       for (std::size_t i = 0; i < spec.row_values(); ++i) {
         if (std::abs(values[i]) > largest) refuse_value(spec, name, row, i, values[i], largest);
@@ -183,9 +183,9 @@ void write_exr(const Producer& producer, AtomicFile& file, const WriteOptions& o
     AtomicOStream stream(file);
     Imf::OutputFile out(stream, header);
     if (options.half) {
-      write_lines<half>(producer, out, type, name, options.threads);
+      write_lines<half>(producer, out, type, name, options.workers);
     } else {
-      write_lines<float>(producer, out, type, name, options.threads);
+      write_lines<float>(producer, out, type, name, options.workers);
     }
   } catch (const Iex::BaseExc& error) {
     throw WorkError(name + ": cannot write: " + error.what());

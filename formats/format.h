@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "support/atomic_file.h"
+#include "support/progress.h"
 #include "table/producer.h"
 #include "table/table.h"
 
@@ -15,7 +16,7 @@ namespace clothbrdf {
 struct WriteOptions {
   bool half = false;      ///< 16-bit floats; a value that does not fit is an error
   bool compress = false;  ///< without loss
-  int threads = 1;
+  Workers workers = {};
 };
 
 /// One table format. Everything that lists, chooses or describes formats goes by formats().
@@ -29,7 +30,7 @@ struct Format {
   void (*check)(const TableSpec& spec, const WriteOptions& options, const std::string& name);
 
   /// Checks, and writes all of a table into the file; the caller commits. Throws WorkError where
-  /// writing fails.
+  /// writing fails; counts and is cancelled as stream_rows is.
   void (*write)(const Producer& producer, AtomicFile& file, const WriteOptions& options);
 
   /// Reads a whole file. Throws InputError, in one line that starts with the file's name. Cells

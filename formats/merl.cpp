@@ -74,7 +74,7 @@ void write_merl(const Producer& producer, AtomicFile& file, const WriteOptions& 
       file.write_at(kHeaderBytes + (c * kCells + first_row * columns) * sizeof(double), rows);
     }
   };
-  stream_rows(producer, options.threads, write, scale);
+  stream_rows(producer, options.workers, write, scale);
 }
 
 Table read_merl(const std::filesystem::path& path) {

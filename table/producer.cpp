@@ -13,6 +13,8 @@ namespace {
 // Large enough that files are written in pieces the system likes, small enough for the processor's
 // cache.
 constexpr std::size_t kBlockValues = 98000;
+// Blocks of slow cells take minutes: work is counted in smaller steps, and given up between them.
+constexpr std::size_t kStepValues = 256;
 
 struct Block {
   std::size_t first_row = 0;
@@ -21,18 +23,19 @@ struct Block {
 
 }  // namespace
 
-void stream_rows(const Producer& producer, int threads, const RowFunction& take,
+void stream_rows(const Producer& producer, Workers workers, const RowFunction& take,
                  const RowFunction& prepare) {
   const TableSpec& spec = producer.spec();
   const std::size_t rows = spec.row_count();
+  const auto threads = static_cast<std::size_t>(workers.threads);
   // Small tables can be the slowest ones: enough blocks for all threads, too.
   constexpr std::size_t kBlocksPerThread = 8;
   const std::size_t rows_per_block = std::max<std::size_t>(
-      1, std::min(kBlockValues / spec.row_values(),
-                  rows / (kBlocksPerThread * static_cast<std::size_t>(threads))));
+      1, std::min(kBlockValues / spec.row_values(), rows / (kBlocksPerThread * threads)));
+  const std::size_t rows_per_step = std::max<std::size_t>(1, kStepValues / spec.row_values());
 
   // A ring of buffers: at most so many blocks are under way, and they are taken in order.
-  const std::size_t tokens = 2 * static_cast<std::size_t>(threads) + 1;
+  const std::size_t tokens = 2 * threads + 1;
   std::vector<Block> ring(tokens);
   std::size_t next_row = 0;
   std::size_t next_slot = 0;
@@ -49,12 +52,19 @@ void stream_rows(const Producer& producer, int threads, const RowFunction& take,
     return &block;
   };
   const auto compute = [&](Block* block) {
-    producer.fill_rows(block->first_row, block->values);
+    std::size_t row = block->first_row;
+    for (std::span<double> left = block->values; !left.empty();) {
+      const std::size_t count = std::min(rows_per_step, left.size() / spec.row_values());
+      producer.fill_rows(row, left.first(count * spec.row_values()));
+      workers.advance(count * spec.column_count());
+      row += count;
+      left = left.subspan(count * spec.row_values());
+    }
     if (prepare) prepare(block->first_row, block->values);
     return block;
   };
   const auto hand_over = [&](Block* block) { take(block->first_row, block->values); };
-  with_threads(threads, [&] {
+  with_threads(workers.threads, [&] {
     tbb::parallel_pipeline(
         tokens, tbb::make_filter<void, Block*>(tbb::filter_mode::serial_in_order, next) &
                     tbb::make_filter<Block*, Block*>(tbb::filter_mode::parallel, compute) &

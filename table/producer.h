@@ -4,6 +4,7 @@
 #include <span>
 
 #include "model/directions.h"
+#include "support/progress.h"
 #include "table/table_spec.h"
 
 namespace clothbrdf {
@@ -27,10 +28,11 @@ class Producer {
 /// Is given whole rows, values[row][channel][column], and may change them.
 using RowFunction = std::function<void(std::size_t first_row, std::span<double> values)>;
 
-/// All rows of a producer, computed and prepared in blocks on `threads` threads while earlier
-/// blocks are taken, in order. Memory: a few blocks of about a megabyte, or of one row where that
-/// is more. What a function throws ends the work.
-void stream_rows(const Producer& producer, int threads, const RowFunction& take,
+/// All rows of a producer, computed and prepared in blocks by the workers while earlier blocks are
+/// taken, in order. Memory: a few blocks of about a megabyte, or of one row where that is more.
+/// What a function throws ends the work. Counts cells into the workers' progress, in a phase that
+/// the caller begins; throws Cancelled.
+void stream_rows(const Producer& producer, Workers workers, const RowFunction& take,
                  const RowFunction& prepare = {});
 
 }  // namespace clothbrdf

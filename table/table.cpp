@@ -54,10 +54,10 @@ std::vector<std::uint8_t> cells_above_horizon(const TableSpec& spec) {
   return valid;
 }
 
-Table collect(const Producer& producer, int threads) {
+Table collect(const Producer& producer, Workers workers) {
   const TableSpec& spec = producer.spec();
   std::vector<double> values(spec.cell_count() * spec.channels.size());
-  stream_rows(producer, threads, [&](std::size_t first_row, std::span<double> rows) {
+  stream_rows(producer, workers, [&](std::size_t first_row, std::span<double> rows) {
     std::copy(rows.begin(), rows.end(),
               values.begin() + static_cast<std::ptrdiff_t>(first_row * spec.row_values()));
   });

@@ -35,7 +35,7 @@ class Table final : public Producer {
 /// list of pairs).
 std::vector<std::uint8_t> cells_above_horizon(const TableSpec& spec);
 
-/// All of a producer's table in memory.
-Table collect(const Producer& producer, int threads);
+/// All of a producer's table in memory, by stream_rows.
+Table collect(const Producer& producer, Workers workers);
 
 }  // namespace clothbrdf

@@ -19,9 +19,10 @@ double tangent(double theta) { return theta >= kRightAngle ? 1e300 : std::tan(th
 }  // namespace
 
 CellIntegrator::CellIntegrator(const std::vector<double>& phi_d_edges, std::size_t channels,
-                               double tolerance)
+                               double tolerance, Workers workers)
     : channels_(channels),
       tolerance_(tolerance),
+      workers_(workers),
       rules_(rules_for(tolerance)),
       column_(channels * kPolynomialNodes),
       value_(channels) {
@@ -99,6 +100,7 @@ void CellIntegrator::add_adaptively(const BoxFunctions& functions, ThetaBox box,
 void CellIntegrator::add_rule(const std::vector<QuadraturePoint>& rule,
                               const BoxFunctions& functions, const ThetaBox& box, std::size_t first,
                               std::span<CellSums> sums) {
+  workers_.check();
   const double farthest = edge_cosines_[first];
   const double nearest = edge_cosines_[first + sums.size()];
   std::vector<double> breaks = {box.h_low,

@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "support/progress.h"
 #include "tabulate/factor_arc.h"
 #include "tabulate/quadrature.h"
 
@@ -37,8 +38,9 @@ struct CellSums {
 class CellIntegrator {
  public:
   /// phi_d_edges: ascending, radians, from 0 to at most one beyond pi/2 (the rest of the circle is
-  /// its mirror image).
-  CellIntegrator(const std::vector<double>& phi_d_edges, std::size_t channels, double tolerance);
+  /// its mirror image). add() throws Cancelled where the workers are.
+  CellIntegrator(const std::vector<double>& phi_d_edges, std::size_t channels, double tolerance,
+                 Workers workers);
 
   /// Adds the integrals over the box to sums[cell of phi_d].
   void add(const BoxFunctions& functions, std::span<CellSums> sums);
@@ -57,6 +59,7 @@ class CellIntegrator {
   std::vector<double> edge_cosines_;  // |cos|, descending to 0 at the right angle
   std::size_t channels_;
   double tolerance_;
+  Workers workers_;
   const RulePair& rules_;
   std::vector<double> column_;  // functions at the current theta_h: [channel][node of theta_d]
   std::vector<double> value_;   // functions at the current point

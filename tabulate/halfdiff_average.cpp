@@ -28,9 +28,10 @@ bool close(double interpolated, double exact, double tolerance) {
 }  // namespace
 
 HalfDifferenceAverage::HalfDifferenceAverage(const TableSpec& spec, const ClothModel<double>& model,
-                                             int threads)
+                                             Workers workers)
     : spec_(spec),
       model_(model),
+      workers_(workers),
       theta_h_axis_(spec.grid().axes.front()),
       theta_d_axis_(spec.grid().axes[spec.grid().axes.size() - 2]),
       phi_d_axis_(spec.grid().axes.back()) {
@@ -43,9 +44,9 @@ HalfDifferenceAverage::HalfDifferenceAverage(const TableSpec& spec, const ClothM
       return sincosd(low + share * (theta_d_axis_.edge_deg(k + 1) - low)).cos;
     };
     const std::size_t panels = static_cast<std::size_t>(theta_d_axis_.size) * panels_per_cell_;
-    paths_ = std::make_unique<PathMatrix>(panel_paths(model, panels, cosine, threads));
+    paths_ = std::make_unique<PathMatrix>(panel_paths(model, panels, cosine, workers));
     if (panels_per_cell_ >= kMostPanelsPerCell ||
-        panels_suffice(model, *paths_, cosine, tolerance(), threads))
+        panels_suffice(model, *paths_, cosine, tolerance(), workers))
       return;
     panels_per_cell_ *= 2;
   }
@@ -131,6 +132,7 @@ std::vector<HalfDifferenceAverage::Panel> HalfDifferenceAverage::make_panels(
       {theta_h_axis_.edge_deg(cell) * kRadian, theta_h_axis_.edge_deg(cell + 1) * kRadian}};
   std::vector<Panel> panels;
   while (!open.empty()) {
+    workers_.check();
     const auto [low, high] = open.back();
     open.pop_back();
     Panel panel = make_panel(row, low, high);
@@ -151,7 +153,7 @@ void HalfDifferenceAverage::fill_row(std::size_t row, std::span<double> values) 
   std::vector<double> edges;
   for (std::size_t k = 0; k <= half; ++k)
     edges.push_back(phi_d_axis_.edge_deg(static_cast<int>(k)) * kRadian);
-  CellIntegrator integrator(edges, channels, spec_.cells.tolerance);
+  CellIntegrator integrator(edges, channels, spec_.cells.tolerance, workers_);
   const std::vector<Panel> panels = make_panels(row);
   const std::size_t block = channels * kPolynomialNodes * kPolynomialNodes;
   for (int d = 0; d < theta_d_axis_.size; ++d) {

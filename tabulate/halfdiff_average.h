@@ -20,7 +20,7 @@ namespace clothbrdf {
 /// follow the horizon (cell_integral.h).
 class HalfDifferenceAverage final : public Kernel {
  public:
-  HalfDifferenceAverage(const TableSpec& spec, const ClothModel<double>& model, int threads);
+  HalfDifferenceAverage(const TableSpec& spec, const ClothModel<double>& model, Workers workers);
   void fill_rows(std::size_t first_row, std::span<double> values) const override;
 
  private:
@@ -43,6 +43,7 @@ class HalfDifferenceAverage final : public Kernel {
 
   const TableSpec& spec_;
   const ClothModel<double>& model_;
+  Workers workers_;
   const Axis& theta_h_axis_;
   const Axis& theta_d_axis_;
   const Axis& phi_d_axis_;

@@ -43,13 +43,13 @@ CLOTHBRDF_VECTORISE void fill_values(const double* factor, const double* above, 
 }  // namespace
 
 HalfDifferencePoints::HalfDifferencePoints(const TableSpec& spec, const ClothModel<double>& model,
-                                           int threads)
+                                           Workers workers)
     : spec_(spec),
       model_(model),
       theta_d_(node_sincos(spec.grid().axes[spec.grid().axes.size() - 2])),
       cos_phi_d_(cosines(node_sincos(spec.grid().axes.back()))),
       folded_(spec.grid().axes.back().highest_deg <= 180),
-      paths_(model, cosines(theta_d_), threads) {}
+      paths_(model, cosines(theta_d_), workers) {}
 
 void HalfDifferencePoints::fill_rows(std::size_t first_row, std::span<double> values) const {
   for (std::size_t at = 0; at < values.size(); at += spec_.row_values()) {

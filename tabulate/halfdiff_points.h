@@ -10,7 +10,7 @@ namespace clothbrdf {
 /// for each half vector, no evaluation of the model for each cell.
 class HalfDifferencePoints final : public Kernel {
  public:
-  HalfDifferencePoints(const TableSpec& spec, const ClothModel<double>& model, int threads);
+  HalfDifferencePoints(const TableSpec& spec, const ClothModel<double>& model, Workers workers);
   void fill_rows(std::size_t first_row, std::span<double> values) const override;
 
  private:

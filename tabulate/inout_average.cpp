@@ -35,8 +35,8 @@ struct InOutAverage::Workspace {
   ChannelSums sums;
 };
 
-InOutAverage::InOutAverage(const TableSpec& spec, const ClothModel<double>& model, int threads)
-    : spec_(spec), model_(model) {
+InOutAverage::InOutAverage(const TableSpec& spec, const ClothModel<double>& model, Workers workers)
+    : spec_(spec), model_(model), workers_(workers) {
   for (const PreparedYarn<double>& y : model.yarns()) {
     for (const double axis : y.yarn.lobe_axes) narrowest_axis_ = std::min(narrowest_axis_, axis);
   }
@@ -45,8 +45,8 @@ InOutAverage::InOutAverage(const TableSpec& spec, const ClothModel<double>& mode
     const PanelCosine cosine = [this](double at) {
       return cosine_at(at / static_cast<double>(panels_));
     };
-    paths_ = std::make_unique<PathMatrix>(panel_paths(model, panels_, cosine, threads));
-    if (panels_ >= kMostPanels || panels_suffice(model, *paths_, cosine, tolerance, threads))
+    paths_ = std::make_unique<PathMatrix>(panel_paths(model, panels_, cosine, workers));
+    if (panels_ >= kMostPanels || panels_suffice(model, *paths_, cosine, tolerance, workers))
       return;
     panels_ *= 2;
   }
@@ -117,7 +117,10 @@ void InOutAverage::fill_rows(std::size_t first_row, std::span<double> values) co
           elevation ? std::cos(box.low[a]) - std::cos(box.high[a]) : box.high[a] - box.low[a];
     }
     const std::optional<std::vector<double>> integral = integrate4(
-        [&](const std::array<double, 4>& at, std::span<double> f) { directional(at, work, f); },
+        [&](const std::array<double, 4>& at, std::span<double> f) {
+          workers_.check();  // here, as one cell can take minutes
+          directional(at, work, f);
+        },
         box, channels, spec_.cells.tolerance,
         [&](const Box4& part) { return coarse_variable(part); });
     if (!integral) {

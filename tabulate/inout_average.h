@@ -16,7 +16,7 @@ namespace clothbrdf {
 /// minutes for large grids of narrow lobes.
 class InOutAverage final : public Kernel {
  public:
-  InOutAverage(const TableSpec& spec, const ClothModel<double>& model, int threads);
+  InOutAverage(const TableSpec& spec, const ClothModel<double>& model, Workers workers);
   void fill_rows(std::size_t first_row, std::span<double> values) const override;
 
  private:
@@ -28,6 +28,7 @@ class InOutAverage final : public Kernel {
 
   const TableSpec& spec_;
   const ClothModel<double>& model_;
+  Workers workers_;
   double narrowest_axis_ = 1;
   std::size_t panels_ = 16;
   std::unique_ptr<const PathMatrix> paths_;

@@ -13,9 +13,10 @@ constexpr std::size_t kMostShared = 4;
 
 }  // namespace
 
-InOutPoints::InOutPoints(const TableSpec& spec, const ClothModel<double>& model)
+InOutPoints::InOutPoints(const TableSpec& spec, const ClothModel<double>& model, Workers workers)
     : spec_(spec),
       model_(model),
+      workers_(1, workers.progress),
       turn_steps_(std::lcm<long long>(spec.grid().axes[1].size, spec.grid().axes[3].size)),
       delta_count_(static_cast<std::size_t>(turn_steps_ / 2 + 1)),
       shared_(delta_count_ <= kMostShared * static_cast<std::size_t>(spec.grid().axes[3].size)) {}
@@ -47,8 +48,8 @@ std::shared_ptr<const PathMatrix> InOutPoints::shared_paths(int theta_i) const {
       cos_theta_d.push_back(pair_geometry(pair, 0.0).cos_theta_d);
     }
   }
-  recent_[0] = std::exchange(
-      recent_[1], {theta_i, std::make_shared<PathMatrix>(model_, std::move(cos_theta_d), 1)});
+  recent_[0] = std::exchange(recent_[1], {theta_i, std::make_shared<PathMatrix>(
+                                                       model_, std::move(cos_theta_d), workers_)});
   return recent_[1].paths;
 }
 
@@ -62,7 +63,7 @@ std::shared_ptr<const PathMatrix> InOutPoints::row_paths(int theta_i, int phi_i)
       cos_theta_d.push_back(pair_geometry(pair, 0.0).cos_theta_d);
     }
   }
-  return std::make_shared<PathMatrix>(model_, std::move(cos_theta_d), 1);
+  return std::make_shared<PathMatrix>(model_, std::move(cos_theta_d), workers_);
 }
 
 void InOutPoints::fill_row(std::size_t row, std::span<double> values) const {
@@ -77,6 +78,7 @@ void InOutPoints::fill_row(std::size_t row, std::span<double> values) const {
   ChannelSums sums(model_, 1);
   std::size_t column = 0;
   for (int theta_o = 0; theta_o < axes[2].size; ++theta_o) {
+    workers_.check();
     for (int phi_o = 0; phi_o < axes[3].size; ++phi_o, ++column) {
       const DirectionPair pair{axes[0].node_deg(theta_i), axes[1].node_deg(phi_i),
                                axes[2].node_deg(theta_o), axes[3].node_deg(phi_o)};

@@ -14,7 +14,7 @@ namespace clothbrdf {
 /// in common.
 class InOutPoints final : public Kernel {
  public:
-  InOutPoints(const TableSpec& spec, const ClothModel<double>& model);
+  InOutPoints(const TableSpec& spec, const ClothModel<double>& model, Workers workers);
   void fill_rows(std::size_t first_row, std::span<double> values) const override;
 
  private:
@@ -25,6 +25,7 @@ class InOutPoints final : public Kernel {
 
   const TableSpec& spec_;
   const ClothModel<double>& model_;
+  Workers workers_;          // one: rows are parallel already
   long long turn_steps_;     // azimuth differences are multiples of 360 / turn_steps_ degrees
   std::size_t delta_count_;  // of them up to 180 degrees
   bool shared_;              // few enough to keep for all rows of a theta_i

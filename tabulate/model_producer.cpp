@@ -26,19 +26,19 @@ double channel_value(const Components& f, const Channel& channel) {
 
 class ModelProducer final : public Producer {
  public:
-  ModelProducer(const TableSpec& spec, int threads)
+  ModelProducer(const TableSpec& spec, Workers workers)
       : spec_(spec), model_(*spec.provenance.material, spec.provenance.effects) {
     if (!spec_.has_grid()) return;
     if (spec_.grid().kind == GridKind::kInOut) {
       if (spec_.cells.average) {
-        kernel_ = std::make_unique<InOutAverage>(spec_, model_, threads);
+        kernel_ = std::make_unique<InOutAverage>(spec_, model_, workers);
       } else {
-        kernel_ = std::make_unique<InOutPoints>(spec_, model_);
+        kernel_ = std::make_unique<InOutPoints>(spec_, model_, workers);
       }
     } else if (spec_.cells.average) {
-      kernel_ = std::make_unique<HalfDifferenceAverage>(spec_, model_, threads);
+      kernel_ = std::make_unique<HalfDifferenceAverage>(spec_, model_, workers);
     } else {
-      kernel_ = std::make_unique<HalfDifferencePoints>(spec_, model_, threads);
+      kernel_ = std::make_unique<HalfDifferencePoints>(spec_, model_, workers);
     }
   }
 
@@ -98,9 +98,9 @@ void check_producible(const TableSpec& spec) {
   }
 }
 
-std::unique_ptr<Producer> make_producer(const TableSpec& spec, int threads) {
+std::unique_ptr<Producer> make_producer(const TableSpec& spec, Workers workers) {
   check_producible(spec);
-  return std::make_unique<ModelProducer>(spec, threads);
+  return std::make_unique<ModelProducer>(spec, workers);
 }
 
 }  // namespace clothbrdf

@@ -17,7 +17,8 @@ TableSpec material_spec(const Material& material, const Effects& effects, const 
 void check_producible(const TableSpec& spec);
 
 /// The values of a table made of the material that its provenance names, from the kernel that fits
-/// its samples. What all rows share is computed here, on `threads` threads.
-std::unique_ptr<Producer> make_producer(const TableSpec& spec, int threads);
+/// its samples. What all rows share is computed here, by the workers; the producer, too, throws
+/// Cancelled within about a second once their progress is cancelled.
+std::unique_ptr<Producer> make_producer(const TableSpec& spec, Workers workers);
 
 }  // namespace clothbrdf

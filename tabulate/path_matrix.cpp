@@ -28,15 +28,17 @@ CLOTHBRDF_VECTORISE double dot(const double* a, const double* b, std::size_t cou
 }  // namespace
 
 PathMatrix::PathMatrix(const ClothModel<double>& model, std::vector<double> cos_theta_d,
-                       int threads)
+                       Workers workers)
     : model_(&model),
       size_(cos_theta_d.size()),
       equal_yarns_(model.material().warp == model.material().weft) {
   for (std::size_t y = 0; y < distinct_yarns(); ++y) lobe_count_ += model.yarns()[y].lobes.size();
   weights_.resize(cos_theta_d.size() * model.channel_count() * lobe_count_);
-  with_threads(threads, [&] {
-    tbb::parallel_for(std::size_t{0}, cos_theta_d.size(),
-                      [&](std::size_t k) { fill_weights(k, cos_theta_d[k]); });
+  with_threads(workers.threads, [&] {
+    tbb::parallel_for(std::size_t{0}, cos_theta_d.size(), [&](std::size_t k) {
+      workers.check();
+      fill_weights(k, cos_theta_d[k]);
+    });
   });
 }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "model/reflectance.h"
+#include "support/progress.h"
 
 namespace clothbrdf {
 
@@ -17,9 +18,9 @@ namespace clothbrdf {
 /// their weights, and their densities are added.
 class PathMatrix {
  public:
-  /// Weights at the given incidence cosines, computed on `threads` threads. Keeps a reference to
-  /// the model.
-  PathMatrix(const ClothModel<double>& model, std::vector<double> cos_theta_d, int threads);
+  /// Weights at the given incidence cosines, computed by the workers. Keeps a reference to the
+  /// model. Throws Cancelled.
+  PathMatrix(const ClothModel<double>& model, std::vector<double> cos_theta_d, Workers workers);
 
   /// Number of incidence cosines.
   std::size_t size() const { return size_; }

@@ -19,14 +19,14 @@ std::vector<double> cosines_at(std::size_t panels, const PanelCosine& cosine,
 }  // namespace
 
 PathMatrix panel_paths(const ClothModel<double>& model, std::size_t panels,
-                       const PanelCosine& cosine, int threads) {
-  return {model, cosines_at(panels, cosine, polynomial_nodes()), threads};
+                       const PanelCosine& cosine, Workers workers) {
+  return {model, cosines_at(panels, cosine, polynomial_nodes()), workers};
 }
 
 bool panels_suffice(const ClothModel<double>& model, const PathMatrix& paths,
-                    const PanelCosine& cosine, double tolerance, int threads) {
+                    const PanelCosine& cosine, double tolerance, Workers workers) {
   const std::size_t panels = paths.size() / kPolynomialNodes;
-  const PathMatrix exact(model, cosines_at(panels, cosine, kTestPoints), threads);
+  const PathMatrix exact(model, cosines_at(panels, cosine, kTestPoints), workers);
   std::vector<double> density(paths.lobe_count());
   ChannelSums nodes(model, paths.size());
   ChannelSums tests(model, exact.size());

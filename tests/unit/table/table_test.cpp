@@ -19,6 +19,26 @@ Table counting_table(const TableSpec& spec) {
   return {spec, values, std::vector<std::uint8_t>(spec.cell_count(), 1)};
 }
 
+// A table whose reader loses patience once it is asked for a row.
+class CancelsAtRow final : public Producer {
+ public:
+  CancelsAtRow(const Table& table, std::size_t row, Progress& progress)
+      : table_(table), row_(row), progress_(progress) {}
+  const TableSpec& spec() const override { return table_.spec(); }
+  void fill_rows(std::size_t first_row, std::span<double> values) const override {
+    if (first_row == row_) progress_.cancel();
+    table_.fill_rows(first_row, values);
+  }
+  void fill_pairs(std::span<const DirectionPair> pairs, std::span<double> values) const override {
+    table_.fill_pairs(pairs, values);
+  }
+
+ private:
+  const Table& table_;
+  std::size_t row_;
+  Progress& progress_;
+};
+
 }  // namespace
 
 TEST_CASE("a table finds its values by cell and channel") {
@@ -81,6 +101,31 @@ TEST_CASE("an error while rows are taken ends the stream and reaches the caller"
       stream_rows(table, 2,
                   [](std::size_t, std::span<double>) { throw std::runtime_error("full"); }),
       std::runtime_error);
+}
+
+TEST_CASE("streamed cells are counted, all of them, for any number of threads") {
+  const Table table = counting_table({halfdiff4d(9, 8, 30, 40), {{"R", Part::kTotal, 0}}, {}, {}});
+  for (const int threads : {1, 2, 5}) {
+    Progress progress;
+    collect(table, {threads, &progress});
+    CHECK(progress.snapshot().done == table.spec().cell_count());
+  }
+}
+
+TEST_CASE("cancelled in mid-stream, the work ends there and the caller is told") {
+  const Table table = counting_table({halfdiff4d(90, 8, 30, 40), {{"R", Part::kTotal, 0}}, {}, {}});
+  const std::size_t rows = table.spec().row_count();
+  for (const int threads : {1, 2, 5}) {
+    Progress progress;
+    const CancelsAtRow producer(table, rows / 2, progress);
+    std::size_t taken = 0;
+    const auto take = [&](std::size_t first_row, std::span<double> values) {
+      taken = first_row + values.size() / table.spec().row_values();
+    };
+    CHECK_THROWS_AS(stream_rows(producer, {threads, &progress}, take), Cancelled);
+    CHECK(taken <= rows / 2);
+    CHECK(progress.snapshot().done < table.spec().cell_count());
+  }
 }
 
 TEST_CASE("cells above the horizon: by their node for point values, by any part for averages") {
