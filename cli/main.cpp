@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cli/commands.h"
+#include "cli/progress_bar.h"
 #include "support/errors.h"
 #include "support/version.h"
 
@@ -101,7 +102,13 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
-    return run(argc, argv);
+    const int exit_code = run(argc, argv);
+    // Whoever started the program shall see that a signal stopped it.
+    if (const int signal = clothbrdf::ProgressBar::signal(); signal != 0) {
+      std::signal(signal, SIG_DFL);
+      std::raise(signal);
+    }
+    return exit_code;
   } catch (...) {  // while complaining
     std::fputs("clothbrdf: internal error\n", stderr);
     return kFailed;

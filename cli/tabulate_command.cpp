@@ -1,3 +1,5 @@
+#include <unistd.h>
+
 #include <algorithm>
 #include <chrono>
 #include <iomanip>
@@ -5,12 +7,14 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include "cli/commands.h"
 #include "cli/options.h"
+#include "cli/progress_bar.h"
 #include "formats/format.h"
 #include "formats/material_json.h"
 #include "support/errors.h"
@@ -106,6 +110,24 @@ void report(const TabulateOptions& options, const Output& output, std::uint64_t 
   std::cout << text.str() << '\n';
 }
 
+void write(const TabulateOptions& options, const Output& output, AtomicFile& file,
+           Workers workers) {
+  workers.progress->begin(output.path.filename().string(), output.spec.grid().cell_count(),
+                          "cells");
+  const std::unique_ptr<Producer> producer = make_producer(output.spec, workers);
+  output.format->write(*producer, file, {options.half, options.compress, workers});
+  workers.check();
+  file.commit();
+}
+
+std::string what_stays(std::span<const Output> unwritten) {
+  std::string names;
+  for (const Output& output : unwritten) {
+    names += (names.empty() ? "" : ", ") + output.path.string();
+  }
+  return names + (unwritten.size() == 1 ? " is as it was" : " are as they were");
+}
+
 void tabulate(const TabulateOptions& options) {
   const Material material = read_material(options.material);
   const int threads = options.threads ? parse_threads(*options.threads) : default_threads();
@@ -118,21 +140,26 @@ void tabulate(const TabulateOptions& options) {
     outputs.push_back(plan_output(options, material, name));
   }
 
+  ProgressBar bar;
+  const Workers workers(threads, &bar.progress());
   // All opened before any work, so that a wrong folder costs nothing and a dry run finds it.
   std::vector<AtomicFile> files;
   files.reserve(outputs.size());
   for (const Output& output : outputs) files.emplace_back(output.path);
-  for (std::size_t k = 0; k < outputs.size(); ++k) {
-    const auto start = std::chrono::steady_clock::now();
-    std::uint64_t bytes = 0;
-    if (!options.dry_run) {
-      const std::unique_ptr<Producer> producer = make_producer(outputs[k].spec, threads);
-      outputs[k].format->write(*producer, files[k], {options.half, options.compress, threads});
-      bytes = files[k].size();
-      files[k].commit();
+  std::size_t next = 0;
+  try {
+    for (; next < outputs.size(); ++next) {
+      const Output& output = outputs[next];
+      const auto start = std::chrono::steady_clock::now();
+      if (!options.dry_run) write(options, output, files[next], workers);
+      const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+      bar.clear();
+      report(options, output, files[next].size(), elapsed.count());
+      // To a pipe all at once: where nobody reads it, that ends the program.
+      if (::isatty(STDOUT_FILENO) != 0) std::cout.flush();
     }
-    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-    report(options, outputs[k], bytes, elapsed.count());
+  } catch (const Cancelled&) {
+    throw WorkError("stopped; " + what_stays(std::span(outputs).subspan(next)));
   }
 }
 
