@@ -80,6 +80,8 @@ struct RunOptions {
   std::optional<rlim_t> file_size_limit = {};   ///< RLIMIT_FSIZE
   std::optional<std::string> output_file = {};  ///< for standard output, instead of keeping it
   bool output_closed = false;                   ///< no standard output at all
+  std::optional<int> terminal = {};             ///< for standard error, instead of keeping it
+  std::optional<int> ignored_signal = {};       ///< as nohup does
 };
 
 /// Starts the program with these as its standard streams; a program that hangs is ended.
@@ -102,6 +104,7 @@ inline pid_t start_program(const Arguments& arguments, int in, int out, int err,
     ::dup2(err, STDERR_FILENO);
     if (options.output_closed) ::close(STDOUT_FILENO);
     std::signal(SIGPIPE, SIG_DFL);
+    if (options.ignored_signal) std::signal(*options.ignored_signal, SIG_IGN);
     ::alarm(kLongestRunSeconds);
     ::execv(argv.front(), argv.data());
     ::_exit(127);
@@ -144,11 +147,13 @@ inline Outcome run_program(const Arguments& arguments, const RunOptions& options
 /// The program at work, its standard input and output on pipes.
 class RunningProgram {
  public:
-  explicit RunningProgram(const Arguments& arguments) : err_(detail::memory_file()) {
+  explicit RunningProgram(const Arguments& arguments, const RunOptions& options = {})
+      : err_(detail::memory_file()) {
     std::signal(SIGPIPE, SIG_IGN);  // a program that died must fail its test, not end all of them
     auto [in_read, in_write] = detail::make_pipe();
     auto [out_read, out_write] = detail::make_pipe();
-    pid_ = start_program(arguments, in_read.get(), out_write.get(), err_.get());
+    pid_ = start_program(arguments, in_read.get(), out_write.get(),
+                         options.terminal.value_or(err_.get()), options);
     in_ = std::move(in_write);
     out_ = std::move(out_read);
   }
@@ -167,7 +172,15 @@ class RunningProgram {
   }
   void close_input() { in_.reset(); }
   void close_output() { out_.reset(); }
-  void kill() { ::kill(pid_, SIGKILL); }
+  void kill() { send(SIGKILL); }
+  void send(int signal) { ::kill(pid_, signal); }
+
+  /// Whether it has not ended yet.
+  bool runs() const {
+    siginfo_t ended{};
+    const auto id = static_cast<id_t>(pid_);
+    return ::waitid(P_PID, id, &ended, WEXITED | WNOHANG | WNOWAIT) == 0 && ended.si_pid == 0;
+  }
 
   /// The next line of standard output without its end; none where it does not come in time.
   std::optional<std::string> read_line(int timeout_ms) {
