@@ -111,6 +111,7 @@ Material random_material(std::mt19937_64& bits) {
   Material material;
   const char* const names[] = {"", "plain", "\"quoted\"\n\\\x01", "\xE7\x8E\x89\xE8\x99\xAB"};
   material.name = names[below(bits, 4)];
+  material.description = names[below(bits, 4)];
   material.reflectance = below(bits, 2) == 0 ? Reflectance::kMicrofacet : Reflectance::kPaper;
   material.paths = below(bits, 2) == 0 ? Paths::kAll : Paths::kSingle;
   material.weights = {uniform(bits, 0, 100), uniform(bits, 0, 1), uniform(bits, 0, 1e-300)};
@@ -170,15 +171,16 @@ TEST_CASE("silk.json holds the values of the design's example") {
 }
 
 TEST_CASE("every key reaches its field") {
-  const Material material = parse_material(R"({"$schema": "x", "name": "n", "reflectance": "paper",
-      "paths": "single", "weights": {"specular": 1, "internal": 2, "diffuse": 3}, "diffuse_path": 4,
-      "warp_fraction": 0.25, "rotation_deg": -30, "wavelengths_nm": [400, 500.5],
+  const Material material = parse_material(R"({"$schema": "x", "name": "n", "description": "d",
+      "reflectance": "paper", "paths": "single",
+      "weights": {"specular": 1, "internal": 2, "diffuse": 3}, "diffuse_path": 4, "warp_fraction": 0.25, "rotation_deg": -30, "wavelengths_nm": [400, 500.5],
       "warp": {"lobe_axes": [0.125, 0.5], "absorption": [5, 6], "layers": 7,
                "refractive_index": 1.25, "scatter": 0.75, "scatter_limit": 0.875},
       "weft": {"lobe_axes": [0.25, 1], "absorption": [8, 9], "layers": 10,
                "refractive_index": 2}})",
                                            kName);
   const Material expected{"n",
+                          "d",
                           Reflectance::kPaper,
                           Paths::kSingle,
                           {1, 2, 3},
@@ -210,6 +212,7 @@ TEST_CASE("a material that is written and read is the same to the last bit") {
   std::mt19937_64 bits(kSeed);
   int negative_zeros = 0;
   int with_weft = 0;
+  int with_description = 0;
   for (int i = 0; i < 2000; ++i) {
     const Material material = random_material(bits);
     REQUIRE(!find_problem(material));
@@ -222,9 +225,13 @@ TEST_CASE("a material that is written and read is the same to the last bit") {
     with_weft += material.weft != material.warp ? 1 : 0;
     REQUIRE((text.find("\"weft\"") != std::string::npos) == (material.weft != material.warp));
     REQUIRE(text.find("{\n  \"$schema\": \"") == 0);
+    const std::size_t described = text.find(",\n  \"description\": \"");
+    REQUIRE((described != std::string::npos) == !material.description.empty());
+    with_description += material.description.empty() ? 0 : 1;
   }
   CHECK(negative_zeros > 100);
   CHECK(with_weft > 500);
+  CHECK(with_description > 1000);
 }
 
 TEST_CASE("a material that could not be read back is not written") {
@@ -238,9 +245,9 @@ TEST_CASE("an unknown key is refused with the nearest known one") {
         "/warp/layer: unknown key (did you mean \"layers\"?), allowed are absorption, layers, "
         "lobe_axes, "
         "refractive_index, scatter, scatter_limit");
-  CHECK_THAT(
-      refusal(changed("/gloss", 1)),
-      ContainsSubstring("/gloss: unknown key, allowed are $schema, diffuse_path, name, paths"));
+  CHECK_THAT(refusal(changed("/gloss", 1)),
+             ContainsSubstring(
+                 "/gloss: unknown key, allowed are $schema, description, diffuse_path, name"));
   CHECK_THAT(refusal(changed("/weights/difuse", 1)),
              ContainsSubstring("/weights/difuse: unknown key (did you mean \"diffuse\"?)"));
   CHECK_THAT(refusal(changed("/line\nbreak \x1b[31m\xC2\x9B\x7F", 1)),
@@ -337,6 +344,8 @@ TEST_CASE("values of the wrong type are refused") {
   CHECK(refusal(changed("/weights", {1, 1, 0.3})) ==
         "/weights: [1,1,0.3] is not allowed: an object");
   CHECK(refusal(changed("/name", true)) == "/name: true is not allowed: a string");
+  CHECK(refusal(changed("/description", {"a", "b"})) ==
+        "/description: [\"a\",\"b\"] is not allowed: a string");
   CHECK(refusal(changed("/$schema", 7)) == "/$schema: 7 is not allowed: a string");
   CHECK(refusal(changed("/paths", "some")) ==
         "/paths: \"some\" is not allowed: \"all\" or \"single\"");
