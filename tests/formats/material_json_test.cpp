@@ -152,6 +152,7 @@ TEST_CASE("the six presets load, and the paper's differ in convention and weight
     CHECK(paper.reflectance == Reflectance::kPaper);
     CHECK(paper.weights != microfacet.weights);
     paper.name = microfacet.name;
+    paper.description = microfacet.description;
     paper.reflectance = microfacet.reflectance;
     paper.weights = microfacet.weights;
     CHECK(paper == microfacet);
@@ -275,9 +276,9 @@ TEST_CASE("arrays of the wrong length are refused") {
 
 TEST_CASE("literals that JSON does not have are refused with line, column and place") {
   for (const std::string literal : {"NaN", "nan", "Infinity", "inf", "None", "True"}) {
-    const std::string message = refusal(replaced(silk_text(), "1.55", literal));
+    const std::string message = refusal(replaced(silk_text(), "1.55,\n", literal + ",\n"));
     CHECK_THAT(message,
-               ContainsSubstring("line 14, column 25, near /warp/refractive_index: not JSON: "));
+               ContainsSubstring("line 15, column 25, near /warp/refractive_index: not JSON: "));
     CHECK_THAT(message, ContainsSubstring("a finite number, a string, true"));
     CHECK_THAT(message, ContainsSubstring("found \"" + literal + "\""));
   }
@@ -382,7 +383,7 @@ TEST_CASE("what is not JSON is refused with line and column") {
   CHECK_THAT(refusal(std::string("{} {}")), ContainsSubstring("line 1, column 4: not JSON: "));
   CHECK_THAT(refusal(silk_text() + "x"), ContainsSubstring("not JSON"));
   CHECK_THAT(refusal(replaced(silk_text(), "\"paths\"", "// comment\n  \"paths\"")),
-             ContainsSubstring("line 5, column 3, near /reflectance: not JSON: "));
+             ContainsSubstring("line 6, column 3, near /reflectance: not JSON: "));
   CHECK_THAT(refusal(replaced(silk_text(), "silk", "s\xFFlk")),
              ContainsSubstring(
                  "line 3, column 13, near /name: not JSON: invalid string: ill-formed UTF-8"));
