@@ -5,6 +5,7 @@
 namespace clothbrdf {
 
 // Each adds its command to the program; the command's work is its callback.
+void add_new_command(CLI::App& program);
 void add_eval_command(CLI::App& program);
 void add_tabulate_command(CLI::App& program);
 void add_info_command(CLI::App& program);

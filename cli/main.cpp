@@ -72,6 +72,7 @@ int run(int argc, char** argv) {
       "clothbrdf");
   program.set_version_flag("--version", std::string("clothbrdf ") + clothbrdf::kVersion);
   program.require_subcommand(1);
+  clothbrdf::add_new_command(program);
   clothbrdf::add_eval_command(program);
   clothbrdf::add_tabulate_command(program);
   clothbrdf::add_info_command(program);

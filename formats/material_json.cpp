@@ -62,6 +62,11 @@ Yarn read_yarn(const json& object) {
   return yarn;
 }
 
+// Bytes that are no UTF-8 are replaced: what is written can be read.
+std::string written(const std::string& text) {
+  return json(text).dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
 // JSON readers take -0 for the integer 0.
 std::string written(double value) {
   return value == 0 && std::signbit(value) ? "-0.0" : number_text(value);
@@ -94,6 +99,7 @@ Material parse_material(std::string_view text, const std::string& name) {
   check_against_schema(file, "material.schema.json", name);
   Material material;
   read_value(file, "name", material.name);
+  read_value(file, "description", material.description);
   read_name(file, "reflectance", kReflectanceNames, material.reflectance);
   read_name(file, "paths", kPathsNames, material.paths);
   const json& weights = file.at("weights");
@@ -115,10 +121,12 @@ Material parse_material(std::string_view text, const std::string& name) {
 
 std::string material_to_json(const Material& material) {
   check_material(material);  // never a file that we would refuse to read
-  const json name(material.name);
   const Weights& weights = material.weights;
   std::string text = std::string("{\n  \"$schema\": \"") + kSchemaReference + "\"";
-  text += ",\n  \"name\": " + name.dump(-1, ' ', false, json::error_handler_t::replace);
+  text += ",\n  \"name\": " + written(material.name);
+  if (!material.description.empty()) {
+    text += ",\n  \"description\": " + written(material.description);
+  }
   text += std::string(",\n  \"reflectance\": \"") +
           name_of(kReflectanceNames, material.reflectance) + '"';
   text += std::string(",\n  \"paths\": \"") + name_of(kPathsNames, material.paths) + '"';

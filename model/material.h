@@ -51,6 +51,7 @@ struct BasicWeights {
 template <class T>
 struct BasicMaterial {
   std::string name;
+  std::string description;  ///< what it is and where its numbers come from, for people
   Reflectance reflectance = Reflectance::kMicrofacet;
   Paths paths = Paths::kAll;
   BasicWeights<T> weights;

@@ -111,6 +111,7 @@ Material random_material(std::mt19937_64& bits) {
   Material material;
   const char* const names[] = {"", "plain", "\"quoted\"\n\\\x01", "\xE7\x8E\x89\xE8\x99\xAB"};
   material.name = names[below(bits, 4)];
+  material.description = names[below(bits, 4)];
   material.reflectance = below(bits, 2) == 0 ? Reflectance::kMicrofacet : Reflectance::kPaper;
   material.paths = below(bits, 2) == 0 ? Paths::kAll : Paths::kSingle;
   material.weights = {uniform(bits, 0, 100), uniform(bits, 0, 1), uniform(bits, 0, 1e-300)};
@@ -151,6 +152,7 @@ TEST_CASE("the six presets load, and the paper's differ in convention and weight
     CHECK(paper.reflectance == Reflectance::kPaper);
     CHECK(paper.weights != microfacet.weights);
     paper.name = microfacet.name;
+    paper.description = microfacet.description;
     paper.reflectance = microfacet.reflectance;
     paper.weights = microfacet.weights;
     CHECK(paper == microfacet);
@@ -170,15 +172,16 @@ TEST_CASE("silk.json holds the values of the design's example") {
 }
 
 TEST_CASE("every key reaches its field") {
-  const Material material = parse_material(R"({"$schema": "x", "name": "n", "reflectance": "paper",
-      "paths": "single", "weights": {"specular": 1, "internal": 2, "diffuse": 3}, "diffuse_path": 4,
-      "warp_fraction": 0.25, "rotation_deg": -30, "wavelengths_nm": [400, 500.5],
+  const Material material = parse_material(R"({"$schema": "x", "name": "n", "description": "d",
+      "reflectance": "paper", "paths": "single",
+      "weights": {"specular": 1, "internal": 2, "diffuse": 3}, "diffuse_path": 4, "warp_fraction": 0.25, "rotation_deg": -30, "wavelengths_nm": [400, 500.5],
       "warp": {"lobe_axes": [0.125, 0.5], "absorption": [5, 6], "layers": 7,
                "refractive_index": 1.25, "scatter": 0.75, "scatter_limit": 0.875},
       "weft": {"lobe_axes": [0.25, 1], "absorption": [8, 9], "layers": 10,
                "refractive_index": 2}})",
                                            kName);
   const Material expected{"n",
+                          "d",
                           Reflectance::kPaper,
                           Paths::kSingle,
                           {1, 2, 3},
@@ -210,6 +213,7 @@ TEST_CASE("a material that is written and read is the same to the last bit") {
   std::mt19937_64 bits(kSeed);
   int negative_zeros = 0;
   int with_weft = 0;
+  int with_description = 0;
   for (int i = 0; i < 2000; ++i) {
     const Material material = random_material(bits);
     REQUIRE(!find_problem(material));
@@ -222,9 +226,13 @@ TEST_CASE("a material that is written and read is the same to the last bit") {
     with_weft += material.weft != material.warp ? 1 : 0;
     REQUIRE((text.find("\"weft\"") != std::string::npos) == (material.weft != material.warp));
     REQUIRE(text.find("{\n  \"$schema\": \"") == 0);
+    const std::size_t described = text.find(",\n  \"description\": \"");
+    REQUIRE((described != std::string::npos) == !material.description.empty());
+    with_description += material.description.empty() ? 0 : 1;
   }
   CHECK(negative_zeros > 100);
   CHECK(with_weft > 500);
+  CHECK(with_description > 1000);
 }
 
 TEST_CASE("a material that could not be read back is not written") {
@@ -238,9 +246,9 @@ TEST_CASE("an unknown key is refused with the nearest known one") {
         "/warp/layer: unknown key (did you mean \"layers\"?), allowed are absorption, layers, "
         "lobe_axes, "
         "refractive_index, scatter, scatter_limit");
-  CHECK_THAT(
-      refusal(changed("/gloss", 1)),
-      ContainsSubstring("/gloss: unknown key, allowed are $schema, diffuse_path, name, paths"));
+  CHECK_THAT(refusal(changed("/gloss", 1)),
+             ContainsSubstring(
+                 "/gloss: unknown key, allowed are $schema, description, diffuse_path, name"));
   CHECK_THAT(refusal(changed("/weights/difuse", 1)),
              ContainsSubstring("/weights/difuse: unknown key (did you mean \"diffuse\"?)"));
   CHECK_THAT(refusal(changed("/line\nbreak \x1b[31m\xC2\x9B\x7F", 1)),
@@ -268,9 +276,9 @@ TEST_CASE("arrays of the wrong length are refused") {
 
 TEST_CASE("literals that JSON does not have are refused with line, column and place") {
   for (const std::string literal : {"NaN", "nan", "Infinity", "inf", "None", "True"}) {
-    const std::string message = refusal(replaced(silk_text(), "1.55", literal));
+    const std::string message = refusal(replaced(silk_text(), "1.55,\n", literal + ",\n"));
     CHECK_THAT(message,
-               ContainsSubstring("line 14, column 25, near /warp/refractive_index: not JSON: "));
+               ContainsSubstring("line 15, column 25, near /warp/refractive_index: not JSON: "));
     CHECK_THAT(message, ContainsSubstring("a finite number, a string, true"));
     CHECK_THAT(message, ContainsSubstring("found \"" + literal + "\""));
   }
@@ -337,6 +345,8 @@ TEST_CASE("values of the wrong type are refused") {
   CHECK(refusal(changed("/weights", {1, 1, 0.3})) ==
         "/weights: [1,1,0.3] is not allowed: an object");
   CHECK(refusal(changed("/name", true)) == "/name: true is not allowed: a string");
+  CHECK(refusal(changed("/description", {"a", "b"})) ==
+        "/description: [\"a\",\"b\"] is not allowed: a string");
   CHECK(refusal(changed("/$schema", 7)) == "/$schema: 7 is not allowed: a string");
   CHECK(refusal(changed("/paths", "some")) ==
         "/paths: \"some\" is not allowed: \"all\" or \"single\"");
@@ -373,7 +383,7 @@ TEST_CASE("what is not JSON is refused with line and column") {
   CHECK_THAT(refusal(std::string("{} {}")), ContainsSubstring("line 1, column 4: not JSON: "));
   CHECK_THAT(refusal(silk_text() + "x"), ContainsSubstring("not JSON"));
   CHECK_THAT(refusal(replaced(silk_text(), "\"paths\"", "// comment\n  \"paths\"")),
-             ContainsSubstring("line 5, column 3, near /reflectance: not JSON: "));
+             ContainsSubstring("line 6, column 3, near /reflectance: not JSON: "));
   CHECK_THAT(refusal(replaced(silk_text(), "silk", "s\xFFlk")),
              ContainsSubstring(
                  "line 3, column 13, near /name: not JSON: invalid string: ill-formed UTF-8"));

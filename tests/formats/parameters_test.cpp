@@ -137,6 +137,7 @@ TEST_CASE("the schema's defaults and lengths are those of the structs") {
   CHECK(schema_of(schema, "/rotation_deg").at("default") == defaults.rotation_deg);
   CHECK(schema_of(schema, "/warp/scatter").at("default") == defaults.warp.scatter);
   CHECK(schema_of(schema, "/name").at("default") == defaults.name);
+  CHECK(schema_of(schema, "/description").at("default") == defaults.description);
   CHECK(schema_of(schema, "/reflectance").at("default") == "microfacet");
   CHECK(defaults.reflectance == Reflectance::kMicrofacet);
   CHECK(schema_of(schema, "/paths").at("default") == "all");
