@@ -22,6 +22,12 @@ std::string made(const Arguments& arguments) {
   return outcome.out;
 }
 
+// What `new` says of a file it wrote.
+std::string said(const std::string& file, const std::string& of_material) {
+  std::string line = file;
+  return line.append(": ").append(of_material).append("\n");
+}
+
 // That `new` refuses, says this, and leaves the folder empty.
 void check_refused(const TemporaryFolder& folder, const Arguments& arguments,
                    const std::vector<std::string>& told, int exit_code = 2) {
@@ -60,7 +66,7 @@ TEST_CASE("every preset can be written, under the file's name, and tabulated") {
   const std::string file = (folder / "my cloth.json").string();
   for (const Preset& known : presets()) {
     const std::string name(known.name);
-    CHECK(made({name, "-o", file}) == file + ": " + name + "\n");
+    CHECK(made({name, "-o", file}) == said(file, name));
     Material expected = read_material(preset(name));
     expected.name = "my cloth";
     CHECK(read_material(file) == expected);
@@ -76,8 +82,7 @@ TEST_CASE("a colour is that of both yarns, and changes nothing else of them") {
   const TemporaryFolder folder;
   const std::string file = (folder / "rose.json").string();
   for (const std::string name : {"silk", "tamamushi"}) {
-    CHECK(made({name, "--colour", "B03060", "-o", file}) ==
-          file + ": " + name + ", colour #b03060\n");
+    CHECK(made({name, "--colour", "B03060", "-o", file}) == said(file, name + ", colour #b03060"));
     Material expected = read_material(preset(name));
     expected.name = "rose";
     expected.description += " Changed: colour #b03060.";
@@ -91,21 +96,26 @@ TEST_CASE("a yarn's own colour goes before that of both; what no colour is given
   const TemporaryFolder folder;
   const std::string file = (folder / "shot.json").string();
   CHECK(made({"silk", "--colour", "#b36", "--weft-colour", "#246", "-o", file}) ==
-        file + ": silk, warp colour #bb3366, weft colour #224466\n");
+        said(file, "silk, warp colour #bb3366, weft colour #224466"));
   Material material = read_material(file);
   CHECK(material.warp.absorption == dyed("#bb3366", material));
   CHECK(material.weft.absorption == dyed("#224466", material));
   CHECK_THAT(material.description,
              ContainsSubstring(" Changed: warp colour #bb3366, weft colour #224466."));
 
+  CHECK(made({"silk", "--warp-colour", "#b36", "--colour", "#246", "-o", file}) ==
+        said(file, "silk, warp colour #bb3366, weft colour #224466"));
+  const Material other_way = read_material(file);
+  CHECK(other_way == material);
+
   CHECK(made({"silk", "--warp-colour", "#000", "-o", file}) ==
-        file + ": silk, warp colour #000000\n");
+        said(file, "silk, warp colour #000000"));
   material = read_material(file);
   CHECK(material.warp.absorption == dyed("#000000", material));
   CHECK(material.weft == read_material(preset("silk")).weft);
 
   CHECK(made({"denim", "--weft-colour", "fff", "-o", file}) ==
-        file + ": denim, weft colour #ffffff\n");
+        said(file, "denim, weft colour #ffffff"));
   material = read_material(file);
   CHECK(material.warp == read_material(preset("denim")).warp);
   CHECK(material.weft.absorption == std::vector<double>{0, 0, 0});
