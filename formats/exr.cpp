@@ -19,6 +19,7 @@
 #include <utility>
 #include <vector>
 
+#include "formats/exr_stream.h"
 #include "formats/table_metadata.h"
 #include "model/parameters.h"
 #include "support/errors.h"
@@ -27,22 +28,6 @@ namespace clothbrdf {
 namespace {
 
 constexpr const char* kAttribute = "clothbrdf";
-
-// OpenEXR's own writer, into our file.
-class AtomicOStream final : public Imf::OStream {
- public:
-  explicit AtomicOStream(AtomicFile& file) : Imf::OStream(file.name().c_str()), file_(file) {}
-  void write(const char bytes[], int count) override {
-    file_.write_at(position_, std::as_bytes(std::span(bytes, static_cast<std::size_t>(count))));
-    position_ += static_cast<std::uint64_t>(count);
-  }
-  std::uint64_t tellp() override { return position_; }
-  void seekp(std::uint64_t position) override { position_ = position; }
-
- private:
-  AtomicFile& file_;
-  std::uint64_t position_ = 0;
-};
 
 // A file that remembers how far it was read: nothing may follow a table's last line.
 class CountingIStream final : public Imf::IStream {
@@ -112,16 +97,10 @@ class RowBuffer {
 
 [[noreturn]] void refuse_value(const TableSpec& spec, const std::string& name, std::size_t row,
                                std::size_t at, double value, double largest) {
-  const Grid& grid = spec.grid();
   const std::size_t cell = row * spec.column_count() + at % spec.column_count();
-  const std::array<int, 4> index = grid.indices(cell);
-  std::string where;
-  for (std::size_t a = 0; a < grid.axes.size(); ++a) {
-    where += " " + grid.axes[a].name + " " + number_text(grid.axes[a].node_deg(index[a]));
-  }
   throw WorkError(name + ": " + full_name(spec.channels[at / spec.column_count()]) + " is " +
-                  number_text(value) + " at" + where + ", beyond the largest stored value " +
-                  number_text(largest) +
+                  number_text(value) + " at " + spec.grid().place(cell) +
+                  ", beyond the largest stored value " + number_text(largest) +
                   (largest < 1e5 ? "; leave out --half to store 32-bit floats" : ""));
 }
 
@@ -147,6 +126,10 @@ void write_lines(const Producer& producer, Imf::OutputFile& out, Imf::PixelType 
 
 Grid exr_grid(Reflectance reflectance) {
   return parse_grid("halfdiff4d", reflectance == Reflectance::kPaper ? 360 : 180);
+}
+
+StoredPrecision exr_precision(const WriteOptions& options) {
+  return options.half ? StoredPrecision{0x1p-11, 0x1p-24} : StoredPrecision{0x1p-24, 0x1p-149};
 }
 
 void check_exr(const TableSpec& spec, const WriteOptions& /*all are allowed*/,
@@ -255,7 +238,9 @@ Table read_exr(const std::filesystem::path& path) {
       throw InputError(name + ": bytes follow the end of the picture");
     }
     std::vector<std::uint8_t> valid = cells_above_horizon(spec);
-    return {std::move(spec), std::move(values), std::move(valid)};
+    const bool half = in.header().channels().begin().channel().type == Imf::HALF;
+    mask_not_measured(spec, values, valid);
+    return {std::move(spec), std::move(values), std::move(valid), exr_precision({.half = half})};
   } catch (const Iex::BaseExc& error) {
     throw InputError(name + ": cannot read: " + error.what());
   }
@@ -268,6 +253,8 @@ Format exr_format() {
           .ending = ".exr",
           .summary = "any grid as a picture of floats, with a description that rebuilds the table",
           .default_grid = exr_grid,
+          .keeps_description = true,
+          .precision = exr_precision,
           .check = check_exr,
           .write = write_exr,
           .read = read_exr};

@@ -25,6 +25,8 @@ struct Format {
   std::string_view ending;   ///< of file names, with the dot
   std::string_view summary;  ///< one line for people
   Grid (*default_grid)(Reflectance reflectance);
+  bool keeps_description;  ///< whether a file says what its table was made of
+  StoredPrecision (*precision)(const WriteOptions& options);
   /// Throws InputError, in one line that starts with the file's name, where the format cannot hold
   /// the table or has no such option.
   void (*check)(const TableSpec& spec, const WriteOptions& options, const std::string& name);

@@ -112,7 +112,6 @@ Table read_merl(const std::filesystem::path& path) {
     if (!in) throw InputError(path.string() + ": cannot read channel " + rgb_channels()[c].name);
     for (std::size_t cell = 0; cell < kCells; ++cell) {
       values[(cell / columns * 3 + c) * columns + cell % columns] = plane[cell] / kStored[c];
-      if (plane[cell] < 0) valid[cell] = 0;  // MERL's mark of a cell that was not measured
       if (plane[cell] != 0) all_zero[cell] = 0;
     }
   }
@@ -120,6 +119,7 @@ Table read_merl(const std::filesystem::path& path) {
   for (std::size_t cell = 0; cell < kCells; ++cell) {
     if (all_zero[cell] != 0 && !spec.grid().node_above_horizon(cell)) valid[cell] = 0;
   }
+  mask_not_measured(spec, values, valid);
   return {std::move(spec), std::move(values), std::move(valid)};
 }
 
@@ -130,6 +130,8 @@ Format merl_format() {
           .ending = ".binary",
           .summary = "isotropic 90x90x180 table of doubles; the mean over phi_h",
           .default_grid = merl_grid,
+          .keeps_description = false,
+          .precision = [](const WriteOptions&) { return StoredPrecision{}; },
           .check = check_merl,
           .write = write_merl,
           .read = read_merl};

@@ -19,6 +19,12 @@ Vector3<T> direction(const T& theta_deg, const T& phi_deg) {
   return {theta.sin * phi.cos, theta.sin * phi.sin, theta.cos};
 }
 
+/// A vector turned about the normal, counter-clockwise seen from it.
+template <class T>
+Vector3<T> turned(const Vector3<T>& v, const SinCos<T>& turn) {
+  return {v[0] * turn.cos - v[1] * turn.sin, v[0] * turn.sin + v[1] * turn.cos, v[2]};
+}
+
 /// A pair of directions in degrees, away from the cloth: wi to the light, wo to the eye. theta from
 /// the normal [0, 180], phi counter-clockwise from x, any finite value.
 template <class T>

@@ -42,4 +42,10 @@ std::optional<int> Axis::cell_of(double angle_deg) const {
   return static_cast<int>(index);
 }
 
+double Axis::coordinate(double angle_deg) const {
+  double share = (angle_deg - lowest_deg) / (highest_deg - lowest_deg);
+  if (spacing == Spacing::kSquared) share = std::sqrt(std::max(share, 0.0));
+  return share * size - (spacing == Spacing::kNodes ? 0.0 : 0.5);
+}
+
 }  // namespace clothbrdf

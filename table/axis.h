@@ -33,6 +33,10 @@ struct Axis {
   /// The cell that holds an angle; none outside the axis. A periodic axis takes any finite angle.
   std::optional<int> cell_of(double angle_deg) const;
 
+  /// The inverse of node_deg, continued between the nodes: k at the node of cell k. Not wrapped,
+  /// not limited.
+  double coordinate(double angle_deg) const;
+
   bool operator==(const Axis&) const = default;
 };
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <sstream>
 
 #include "support/errors.h"
 
@@ -34,10 +35,6 @@ const std::array<Kind, 3>& kinds() {
 const Kind& kind_of(GridKind kind) {
   return *std::find_if(kinds().begin(), kinds().end(),
                        [&](const Kind& k) { return k.kind == kind; });
-}
-
-Vector3<double> rotate_z(const Vector3<double>& v, const SinCos<double>& turn) {
-  return {v[0] * turn.cos - v[1] * turn.sin, v[0] * turn.sin + v[1] * turn.cos, v[2]};
 }
 
 Vector3<double> rotate_y(const Vector3<double>& v, const SinCos<double>& turn) {
@@ -98,7 +95,7 @@ Directions Grid::directions(std::size_t cell) const {
   const SinCos<double> phi_h = sincosd(anisotropic ? angle[1] : 0.0);
   const Vector3<double> wd = direction(angle[anisotropic ? 2 : 1], angle[anisotropic ? 3 : 2]);
   const auto to_cloth = [&](const Vector3<double>& v) {
-    return rotate_z(rotate_y(v, theta_h), phi_h);
+    return turned(rotate_y(v, theta_h), phi_h);
   };
   return {to_cloth(wd), to_cloth({-wd[0], -wd[1], wd[2]})};
 }
@@ -129,25 +126,24 @@ bool Grid::any_above_horizon(std::size_t cell) const {
   return incidence_cosines(sincosd(edge(0, 0)), sincosd(edge(d, 0)), best).i > 0;
 }
 
+std::array<double, 4> Grid::angles(const Vector3<double>& wi, const Vector3<double>& wo) const {
+  if (kind == GridKind::kInOut) {
+    return {elevation_deg(wi), azimuth_deg(wi), elevation_deg(wo), azimuth_deg(wo)};
+  }
+  const Vector3<double> h = {wi[0] + wo[0], wi[1] + wo[1], wi[2] + wo[2]};
+  const double theta_h = elevation_deg(h);
+  const double phi_h = h[0] == 0 && h[1] == 0 ? 0 : azimuth_deg(h);
+  const Vector3<double> wd = rotate_y(turned(wi, sincosd(-phi_h)), sincosd(-theta_h));
+  double phi_d = azimuth_deg(wd);
+  if (axes.back().highest_deg <= 180 && phi_d >= 180) phi_d -= 180;
+  const double theta_d = std::min(elevation_deg(wd), 90.0);
+  if (kind == GridKind::kHalfDifference4d) return {theta_h, phi_h, theta_d, phi_d};
+  return {theta_h, theta_d, phi_d, 0};
+}
+
 std::optional<std::size_t> Grid::cell_of(const Vector3<double>& wi,
                                          const Vector3<double>& wo) const {
-  std::array<double, 4> angle{};
-  if (kind == GridKind::kInOut) {
-    angle = {elevation_deg(wi), azimuth_deg(wi), elevation_deg(wo), azimuth_deg(wo)};
-  } else {
-    const Vector3<double> h = {wi[0] + wo[0], wi[1] + wo[1], wi[2] + wo[2]};
-    const double theta_h = elevation_deg(h);
-    const double phi_h = h[0] == 0 && h[1] == 0 ? 0 : azimuth_deg(h);
-    const Vector3<double> wd = rotate_y(rotate_z(wi, sincosd(-phi_h)), sincosd(-theta_h));
-    double phi_d = azimuth_deg(wd);
-    if (axes.back().highest_deg <= 180 && phi_d >= 180) phi_d -= 180;
-    const double theta_d = std::min(elevation_deg(wd), 90.0);
-    if (kind == GridKind::kHalfDifference4d) {
-      angle = {theta_h, phi_h, theta_d, phi_d};
-    } else {
-      angle = {theta_h, theta_d, phi_d, 0};
-    }
-  }
+  const std::array<double, 4> angle = angles(wi, wo);
   std::size_t cell = 0;
   for (std::size_t a = 0; a < axes.size(); ++a) {
     const std::optional<int> index = axes[a].cell_of(angle[a]);
@@ -155,6 +151,34 @@ std::optional<std::size_t> Grid::cell_of(const Vector3<double>& wi,
     cell = cell * static_cast<std::size_t>(axes[a].size) + static_cast<std::size_t>(*index);
   }
   return cell;
+}
+
+double Grid::measure(std::size_t cell) const {
+  const std::array<int, 4> index = indices(cell);
+  const auto azimuths = [&](std::size_t axis) {
+    return (axes[axis].edge_deg(index[axis] + 1) - axes[axis].edge_deg(index[axis])) * kDegree;
+  };
+  const auto cap = [&](std::size_t axis, auto&& integral) {
+    return integral(sincosd(axes[axis].edge_deg(index[axis] + 1))) -
+           integral(sincosd(axes[axis].edge_deg(index[axis])));
+  };
+  const auto solid_angle = [](const SinCos<double>& theta) { return 1 - theta.cos; };
+  const auto halved = [](const SinCos<double>& theta) { return 2 * theta.sin * theta.sin; };
+  if (kind == GridKind::kInOut) {
+    return cap(0, solid_angle) * azimuths(1) * cap(2, solid_angle) * azimuths(3);
+  }
+  const std::size_t d = axes.size() - 2;
+  const double phi_h = kind == GridKind::kHalfDifference4d ? azimuths(1) : 360 * kDegree;
+  return cap(0, solid_angle) * phi_h * cap(d, halved) * azimuths(d + 1);
+}
+
+std::string Grid::place(std::size_t cell) const {
+  const std::array<int, 4> index = indices(cell);
+  std::ostringstream text;
+  for (std::size_t a = 0; a < axes.size(); ++a) {
+    text << (a == 0 ? "" : " ") << axes[a].name << ' ' << axes[a].node_deg(index[a]);
+  }
+  return text.str();
 }
 
 std::string Grid::description() const {

@@ -53,9 +53,19 @@ struct Grid {
   /// Whether any part of the cell is.
   bool any_above_horizon(std::size_t cell) const;
 
+  /// The angles of a pair of unit vectors on each axis, degrees; 0 beyond the last one. phi_d
+  /// beyond an axis that ends at 180 degrees is folded by reciprocity.
+  std::array<double, 4> angles(const Vector3<double>& wi, const Vector3<double>& wo) const;
+
   /// The cell that holds a pair of unit vectors; none outside the grid. phi_h is read with the
-  /// axis's period; phi_d beyond an axis that ends at 180 degrees is folded by reciprocity.
+  /// axis's period.
   std::optional<std::size_t> cell_of(const Vector3<double>& wi, const Vector3<double>& wo) const;
+
+  /// The size of a cell, dwi dwo (= 4 cos theta_d dwh dwd), sr^2; its part below the horizon too.
+  double measure(std::size_t cell) const;
+
+  /// Where the node of a cell is, for messages: "theta_h 0.25 theta_d 1 phi_d 90", in degrees.
+  std::string place(std::size_t cell) const;
 
   /// As --grid takes it, for instance "halfdiff3d:90x90x180".
   std::string description() const;

@@ -1,13 +1,25 @@
 #include "table/table.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
 namespace clothbrdf {
+namespace {
 
-Table::Table(TableSpec spec, std::vector<double> values, std::vector<std::uint8_t> valid)
-    : spec_(std::move(spec)), values_(std::move(values)), valid_(std::move(valid)) {
+// The product of four pairs of shares adds up to 1 to within some epsilons.
+constexpr double kWeightRounding = 1e-14;
+
+}  // namespace
+
+Table::Table(TableSpec spec, std::vector<double> values, std::vector<std::uint8_t> valid,
+             StoredPrecision precision)
+    : spec_(std::move(spec)),
+      values_(std::move(values)),
+      valid_(std::move(valid)),
+      precision_(precision) {
   if (values_.size() != spec_.cell_count() * spec_.channels.size() ||
       valid_.size() != spec_.cell_count()) {
     throw std::invalid_argument(
@@ -24,19 +36,64 @@ void Table::fill_pairs(std::span<const DirectionPair> pairs, std::span<double> v
   const std::size_t channels = spec_.channels.size();
   for (std::size_t p = 0; p < pairs.size(); ++p) {
     const DirectionPair& pair = pairs[p];
-    std::optional<std::size_t> cell;
+    const std::span<double> to = values.subspan(p * channels, channels);
     if (spec_.has_grid()) {
-      const Vector3<double> wi = direction(pair.theta_i, pair.phi_i);
-      const Vector3<double> wo = direction(pair.theta_o, pair.phi_o);
-      if (wi[2] > 0 && wo[2] > 0) cell = spec_.grid().cell_of(wi, wo);
-    } else {
-      const auto found = std::find(spec_.pairs().begin(), spec_.pairs().end(), pair);
-      if (found != spec_.pairs().end())
-        cell = static_cast<std::size_t>(found - spec_.pairs().begin());
+      interpolate({direction(pair.theta_i, pair.phi_i), direction(pair.theta_o, pair.phi_o)}, to);
+      continue;
     }
-    for (std::size_t c = 0; c < channels; ++c)
-      values[p * channels + c] = cell ? value(*cell, c) : 0.0;
+    const auto found = std::find(spec_.pairs().begin(), spec_.pairs().end(), pair);
+    const bool known = found != spec_.pairs().end();
+    const auto cell = static_cast<std::size_t>(found - spec_.pairs().begin());
+    for (std::size_t c = 0; c < channels; ++c) to[c] = known ? value(cell, c) : 0.0;
   }
+}
+
+bool Table::interpolate(const Directions& directions, std::span<double> values) const {
+  std::fill(values.begin(), values.end(), 0.0);
+  if (!directions.above_horizon()) return false;
+  const std::vector<Axis>& axes = spec_.grid().axes;
+  const std::array<double, 4> angle = spec_.grid().angles(directions.wi, directions.wo);
+  std::array<std::array<std::size_t, 2>, 4> index{};  // the nodes on both sides
+  std::array<double, 4> upper_share{};
+  for (std::size_t a = 0; a < axes.size(); ++a) {
+    const int size = axes[a].size;
+    double at = axes[a].coordinate(angle[a]);
+    if (!axes[a].periodic) at = std::clamp(at, 0.0, size - 1.0);
+    const double lower = std::floor(at);
+    upper_share[a] = at - lower;
+    for (int side = 0; side < 2; ++side) {
+      const int k = static_cast<int>(lower) + side;
+      const int wrapped = ((k % size) + size) % size;
+      index[a][static_cast<std::size_t>(side)] =
+          static_cast<std::size_t>(axes[a].periodic ? wrapped : std::min(k, size - 1));
+    }
+  }
+  double total = 0;
+  for (std::size_t corner = 0; corner < std::size_t{1} << axes.size(); ++corner) {
+    double weight = 1;
+    std::size_t cell = 0;
+    for (std::size_t a = 0; a < axes.size(); ++a) {
+      const std::size_t side = corner >> a & 1U;
+      weight *= side == 1 ? upper_share[a] : 1 - upper_share[a];
+      cell = cell * static_cast<std::size_t>(axes[a].size) + index[a][side];
+    }
+    if (weight == 0 || !valid(cell) || !finite(cell)) continue;
+    for (std::size_t c = 0; c < values.size(); ++c) values[c] += weight * value(cell, c);
+    total += weight;
+  }
+  if (total == 0) return false;
+  // Weights that should add up to 1 may miss it by a rounding, which would be seen at the nodes.
+  if (std::abs(total - 1) > kWeightRounding) {
+    for (double& v : values) v /= total;
+  }
+  return true;
+}
+
+bool Table::finite(std::size_t cell) const {
+  for (std::size_t c = 0; c < spec_.channels.size(); ++c) {
+    if (!std::isfinite(value(cell, c))) return false;
+  }
+  return true;
 }
 
 double Table::value(std::size_t cell, std::size_t channel) const {
@@ -52,6 +109,33 @@ std::vector<std::uint8_t> cells_above_horizon(const TableSpec& spec) {
                                      : spec.grid().node_above_horizon(cell);
   }
   return valid;
+}
+
+void mask_not_measured(const TableSpec& spec, std::span<const double> values,
+                       std::span<std::uint8_t> valid) {
+  const std::size_t columns = spec.column_count();
+  for (std::size_t at = 0; at < values.size(); ++at) {
+    if (values[at] < 0) valid[at / spec.row_values() * columns + at % columns] = 0;
+  }
+}
+
+Table without_components(const Table& table) {
+  TableSpec spec = table.spec();
+  std::erase_if(spec.channels, [](const Channel& c) { return c.part != Part::kTotal; });
+  std::vector<double> values;
+  values.reserve(spec.cell_count() * spec.channels.size());
+  std::vector<std::uint8_t> valid(spec.cell_count());
+  const std::size_t columns = spec.column_count();
+  for (std::size_t row = 0; row < spec.row_count(); ++row) {
+    for (std::size_t c = 0; c < table.spec().channels.size(); ++c) {
+      if (table.spec().channels[c].part != Part::kTotal) continue;
+      const auto from = table.values().subspan((row * table.spec().channels.size() + c) * columns);
+      values.insert(values.end(), from.begin(),
+                    from.begin() + static_cast<std::ptrdiff_t>(columns));
+    }
+  }
+  for (std::size_t cell = 0; cell < valid.size(); ++cell) valid[cell] = table.valid(cell) ? 1 : 0;
+  return {std::move(spec), std::move(values), std::move(valid), table.precision()};
 }
 
 Table collect(const Producer& producer, Workers workers) {

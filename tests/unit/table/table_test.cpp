@@ -1,10 +1,13 @@
 #include "table/table.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <numeric>
 #include <stdexcept>
 
 #include "tests/catch.h"
+#include "tests/support/random_inputs.h"
 
 namespace clothbrdf::test {
 namespace {
@@ -49,17 +52,101 @@ TEST_CASE("a table finds its values by cell and channel") {
   CHECK(table.value(27, 1) == 67);
 }
 
-TEST_CASE("a table answers a pair of directions with the cell that holds it, 0 below the horizon") {
+TEST_CASE("a table gives its own values at the nodes of its cells") {
+  for (const Grid& grid : {halfdiff3d(9, 8, 7), halfdiff4d(5, 6, 7, 8), inout(4, 5, 6, 7)}) {
+    const Table table = counting_table({grid, {{"R", Part::kTotal, 0}}, {}, {}});
+    int checked = 0;
+    for (std::size_t cell = 0; cell < grid.cell_count(); ++cell) {
+      const std::array<int, 4> k = grid.indices(cell);
+      const bool at_pole = grid.kind == GridKind::kInOut && (k[0] == 0 || k[2] == 0);
+      if (at_pole || !grid.node_above_horizon(cell)) continue;  // a pole has no azimuth
+      double value = 0;
+      REQUIRE(table.interpolate(grid.directions(cell), std::span(&value, 1)));
+      INFO(grid.description() << " cell " << cell);
+      // The angles of a node come back to a few epsilons; steps between cells are up to the number
+      // of cells.
+      CHECK_THAT(value, Catch::Matchers::WithinAbs(table.value(cell, 0), 1e-9));
+      ++checked;
+    }
+    CHECK(checked > 300);
+  }
+}
+
+TEST_CASE("between nodes a table is linear in each axis's own coordinate, and wraps in azimuth") {
+  // The value is the axis's index; its coordinate at any angle is expected back.
+  const Grid grid = halfdiff4d(20, 12, 20, 12);
+  RandomInputs random(seed_from_environment());
+  for (std::size_t axis = 0; axis < 4; ++axis) {
+    const TableSpec spec{grid, {{"R", Part::kTotal, 0}}, {}, {}};
+    std::vector<double> values(spec.cell_count());
+    for (std::size_t cell = 0; cell < values.size(); ++cell)
+      values[cell] = grid.indices(cell)[axis];
+    const Table table(spec, values, std::vector<std::uint8_t>(values.size(), 1));
+    const double last = grid.axes[axis].size - 1.0;
+    int between = 0;
+    for (int n = 0; n < 2000; ++n) {
+      const DirectionPair p = random.pair();
+      const Directions d = {direction(p.theta_i, p.phi_i), direction(p.theta_o, p.phi_o)};
+      double value = 0;
+      REQUIRE(table.interpolate(d, std::span(&value, 1)));
+      double at = grid.axes[axis].coordinate(grid.angles(d.wi, d.wo)[axis]);
+      if (grid.axes[axis].periodic && at > last + 0.5) at -= grid.axes[axis].size;  // half a turn
+      double expected = std::clamp(at, 0.0, last);
+      if (grid.axes[axis].periodic && (at < 0 || at > last)) {
+        const double beyond = at < 0 ? at + 1 : at - last;  // from the last node to the first
+        expected = last * (1 - beyond);
+      }
+      CHECK_THAT(value, Catch::Matchers::WithinAbs(expected, 1e-9));
+      between += std::abs(at - std::round(at)) > 0.1;
+    }
+    CHECK(between > 500);
+  }
+}
+
+TEST_CASE("cells without a measurement take no part in what lies between") {
+  const Grid grid = inout(4, 4, 4, 4);
+  const TableSpec spec{grid, {{"R", Part::kTotal, 0}}, {}, {}};
+  std::vector<double> values(spec.cell_count(), 2.0);
+  std::vector<std::uint8_t> valid(spec.cell_count(), 1);
+  const Directions between = {direction(30.0, 20.0), direction(30.0, 20.0)};
+  const std::size_t near = grid.cell_of(between.wi, between.wo).value();
+  values[near] = 1e9;
+  valid[near] = 0;
+  values[near + 1] = std::numeric_limits<double>::quiet_NaN();
+  double value = 0;
+  REQUIRE(Table(spec, values, valid).interpolate(between, std::span(&value, 1)));
+  CHECK(value == 2);
+  std::fill(valid.begin(), valid.end(), std::uint8_t{0});
+  CHECK_FALSE(Table(spec, values, valid).interpolate(between, std::span(&value, 1)));
+  CHECK(value == 0);
+}
+
+TEST_CASE("below the horizon a table is 0") {
   const Table table = counting_table(small_spec());
   const std::vector<DirectionPair> pairs = {{30, 10, 20, 60}, {120, 0, 20, 0}};
   std::vector<double> values(4);
   table.fill_pairs(pairs, values);
-  const Vector3<double> wi = direction(30.0, 10.0);
-  const Vector3<double> wo = direction(20.0, 60.0);
-  const std::size_t cell = table.spec().grid().cell_of(wi, wo).value();
-  CHECK(values[0] == table.value(cell, 0));
-  CHECK(values[1] == table.value(cell, 1));
+  CHECK(values[0] > 0);
   CHECK(values[2] == 0);
+  CHECK(values[3] == 0);
+}
+
+TEST_CASE("a table without its components keeps totals, mask and precision") {
+  TableSpec spec = small_spec();
+  spec.channels.insert(spec.channels.begin() + 1, {"R", Part::kInternal, 0});
+  std::vector<double> values(spec.cell_count() * 3);
+  std::iota(values.begin(), values.end(), 0.0);
+  std::vector<std::uint8_t> valid(spec.cell_count(), 1);
+  valid[7] = 0;
+  const Table whole(spec, values, valid, {0x1p-11, 0x1p-24});
+  const Table totals = without_components(whole);
+  CHECK(totals.spec().channels == small_spec().channels);
+  for (const std::size_t cell : {0U, 7U, 33U}) {
+    CHECK(totals.value(cell, 0) == whole.value(cell, 0));
+    CHECK(totals.value(cell, 1) == whole.value(cell, 2));
+    CHECK(totals.valid(cell) == whole.valid(cell));
+  }
+  CHECK(totals.precision() == whole.precision());
 }
 
 TEST_CASE("a list of pairs is a table too") {
