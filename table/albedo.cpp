@@ -1,0 +1,165 @@
+#include "table/albedo.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "support/threads.h"
+
+namespace clothbrdf {
+namespace {
+
+constexpr double kRadian = std::numbers::pi / 180;
+constexpr int kAzimuths = 16;
+
+/// Steps of a rule of midpoints in theta and in phi, degrees.
+struct Step {
+  double angle;
+  double width;
+};
+
+// Two steps for each cell of the axis, as dense as its cells are.
+std::vector<Step> half_cells(const Axis& axis) {
+  std::vector<Step> steps;
+  for (int k = 0; k < axis.size; ++k) {
+    const double low = axis.edge_deg(k);
+    const double width = (axis.edge_deg(k + 1) - low) / 2;
+    steps.push_back({low + width / 2, width});
+    steps.push_back({low + width * 1.5, width});
+  }
+  return steps;
+}
+
+std::vector<Step> even_steps(double range, int count) {
+  std::vector<Step> steps;
+  for (int k = 0; k < count; ++k) steps.push_back({range * (k + 0.5) / count, range / count});
+  return steps;
+}
+
+void add(const Table& table, const Directions& d, double weight, std::span<double> sample,
+         std::span<double> sum) {
+  if (!table.interpolate(d, sample)) return;
+  for (std::size_t c = 0; c < sum.size(); ++c) sum[c] += weight * sample[c];
+}
+
+// The table with f_r cos(theta_i) cos(theta_o) at each node.
+Table with_cosines(const Table& table) {
+  const TableSpec& spec = table.spec();
+  const std::size_t columns = spec.column_count();
+  std::vector<double> values(table.values().begin(), table.values().end());
+  std::vector<std::uint8_t> valid(spec.cell_count());
+  for (std::size_t cell = 0; cell < valid.size(); ++cell) {
+    const Directions node = spec.grid().directions(cell);
+    valid[cell] = table.valid(cell) && node.above_horizon();
+    double* const first = values.data() + cell / columns * spec.row_values() + cell % columns;
+    for (std::size_t c = 0; c < spec.channels.size(); ++c) {
+      first[c * columns] *= node.wi[2] * node.wo[2];
+    }
+  }
+  return {spec, std::move(values), std::move(valid), table.precision()};
+}
+
+// Of a table with cosines; d wo = 4 cos(theta_d) d wh.
+void integrate_half_vectors(const Table& table, const Vector3<double>& wi,
+                            std::span<double> albedo) {
+  const Grid& grid = table.spec().grid();
+  constexpr int kIsotropicAzimuths = 120;
+  const int azimuths =
+      grid.kind == GridKind::kHalfDifference4d
+          ? static_cast<int>(2 * grid.axes[1].size * std::lround(360 / grid.axes[1].highest_deg))
+          : kIsotropicAzimuths;
+  const std::vector<Step> phis = even_steps(360, azimuths);
+  std::vector<double> sample(albedo.size());
+  for (const Step& theta : half_cells(grid.axes[0])) {
+    const double area = sincosd(theta.angle).sin * theta.width * phis[0].width * kRadian * kRadian;
+    for (const Step& phi : phis) {
+      const Vector3<double> wh = direction(theta.angle, phi.angle);
+      const double x = wi[0] * wh[0] + wi[1] * wh[1] + wi[2] * wh[2];
+      if (x <= 0) continue;
+      const Vector3<double> wo = {2 * x * wh[0] - wi[0], 2 * x * wh[1] - wi[1],
+                                  2 * x * wh[2] - wi[2]};
+      add(table, {wi, wo}, 4 * x * area / wi[2], sample, albedo);
+    }
+  }
+}
+
+void integrate_outgoing(const Table& table, const Vector3<double>& wi, std::span<double> albedo) {
+  constexpr double kWidest = 2;
+  const std::vector<Axis>& axes = table.spec().grid().axes;
+  const auto fine = [&](const Axis& axis) {
+    const double range = axis.highest_deg;
+    return even_steps(
+        range, axis.size * std::max(1, static_cast<int>(std::ceil(range / axis.size / kWidest))));
+  };
+  const std::vector<Step> phis = fine(axes[3]);
+  std::vector<double> sample(albedo.size());
+  for (const Step& theta : fine(axes[2])) {
+    const double area = sincosd(theta.angle).sin * theta.width * phis[0].width * kRadian * kRadian;
+    for (const Step& phi : phis) {
+      const Vector3<double> wo = direction(theta.angle, phi.angle);
+      add(table, {wi, wo}, wo[2] * area, sample, albedo);
+    }
+  }
+}
+
+std::vector<double> incident_thetas(const Grid& grid) {
+  constexpr double kBeyond = 89;
+  std::vector<double> thetas;
+  for (double theta = 0; theta <= kHighestTheta; theta += 5) thetas.push_back(theta);
+  thetas.push_back(kBeyond);
+  if (grid.kind == GridKind::kInOut) {
+    const double last = grid.axes[0].node_deg(grid.axes[0].size - 1);
+    std::erase_if(thetas, [&](double theta) { return theta > last; });
+  }
+  return thetas;
+}
+
+}  // namespace
+
+std::vector<Albedo> albedo_by_theta(const Table& table, const Workers& workers) {
+  const Grid& grid = table.spec().grid();
+  const bool over_wo = grid.kind == GridKind::kInOut;
+  std::optional<Table> bounded;
+  if (!over_wo) bounded = with_cosines(table);
+  const std::vector<double> thetas = incident_thetas(grid);
+  const int azimuths = grid.kind == GridKind::kHalfDifference3d ? 1 : kAzimuths;
+  if (workers.progress != nullptr) {
+    workers.progress->begin("directional albedo",
+                            thetas.size() * static_cast<std::size_t>(azimuths), "directions");
+  }
+  std::vector<Albedo> all(thetas.size() * static_cast<std::size_t>(azimuths));
+  with_threads(workers.threads, [&] {
+    tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t k) {
+      const auto azimuth = static_cast<double>(k % static_cast<std::size_t>(azimuths));
+      Albedo& albedo = all[k];
+      albedo.theta_i_deg = thetas[k / static_cast<std::size_t>(azimuths)];
+      albedo.phi_i_deg = 360.0 * azimuth / azimuths;
+      std::vector<double> channels(table.spec().channels.size());
+      const Vector3<double> wi = direction(albedo.theta_i_deg, albedo.phi_i_deg);
+      if (over_wo) {
+        integrate_outgoing(table, wi, channels);
+      } else {
+        integrate_half_vectors(*bounded, wi, channels);
+      }
+      const auto largest = std::max_element(channels.begin(), channels.end());
+      albedo.channel = static_cast<std::size_t>(largest - channels.begin());
+      albedo.value = *largest;
+      workers.advance(1);
+    });
+  });
+  std::vector<Albedo> by_theta;
+  for (std::size_t t = 0; t < thetas.size(); ++t) {
+    const auto first = all.begin() + static_cast<std::ptrdiff_t>(t) * azimuths;
+    by_theta.push_back(
+        *std::max_element(first, first + azimuths,
+                          [](const Albedo& a, const Albedo& b) { return a.value < b.value; }));
+  }
+  return by_theta;
+}
+
+}  // namespace clothbrdf

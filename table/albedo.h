@@ -1,0 +1,27 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "support/progress.h"
+#include "table/table.h"
+
+namespace clothbrdf {
+
+/// Share of the light from one direction that leaves in all directions: the integral of f_r
+/// cos(theta_o) over wo.
+struct Albedo {
+  double theta_i_deg = 0;
+  double phi_i_deg = 0;  ///< of the azimuths tried, the one where it is largest
+  std::size_t channel = 0;
+  double value = 0;
+};
+
+/// The steepest incidence at which an albedo is judged, degrees.
+inline constexpr double kHighestTheta = 85;
+
+/// For theta_i = 0, 5 ... 85 and 89 degrees: the largest albedo over channels and 16 azimuths of
+/// the light (one, where the table knows none).
+std::vector<Albedo> albedo_by_theta(const Table& table, const Workers& workers);
+
+}  // namespace clothbrdf
