@@ -5,6 +5,8 @@
 #include <numeric>
 #include <utility>
 
+#include "tabulate/pair_evaluator.h"
+
 namespace clothbrdf {
 namespace {
 
@@ -74,27 +76,20 @@ void InOutPoints::fill_row(std::size_t row, std::span<double> values) const {
   const std::shared_ptr<const PathMatrix> paths =
       shared_ ? shared_paths(theta_i) : row_paths(theta_i, phi_i);
   const std::size_t columns = spec_.column_count();
-  std::vector<double> density(paths->lobe_count());
-  ChannelSums sums(model_, 1);
+  PairEvaluator evaluator(model_, *paths);
+  std::vector<double> sample(spec_.channels.size());
   std::size_t column = 0;
   for (int theta_o = 0; theta_o < axes[2].size; ++theta_o) {
     workers_.check();
     for (int phi_o = 0; phi_o < axes[3].size; ++phi_o, ++column) {
       const DirectionPair pair{axes[0].node_deg(theta_i), axes[1].node_deg(phi_i),
                                axes[2].node_deg(theta_o), axes[3].node_deg(phi_o)};
-      const PairGeometry<double> g = pair_geometry(pair, model_.material().rotation_deg);
-      const double factor = directional_factor(model_.material().reflectance, g.h_n, g.cos_theta_d,
-                                               g.cos_theta_i, g.cos_theta_o);
       const std::size_t index =
           shared_ ? static_cast<std::size_t>(theta_o) * delta_count_ + delta_index(phi_i, phi_o)
                   : column;
-      paths->densities(g.h_weft, g.h_warp, g.h_n, density);
-      paths->sums(density, index, sums.specular(), sums.internal());
-      for (std::size_t c = 0; c < spec_.channels.size(); ++c) {
-        const Channel& channel = spec_.channels[c];
-        values[c * columns + column] =
-            factor * sums.directional(channel, 0) + sums.constant(channel);
-      }
+      evaluator.evaluate(pair_geometry(pair, model_.material().rotation_deg), index, spec_.channels,
+                         sample);
+      for (std::size_t c = 0; c < sample.size(); ++c) values[c * columns + column] = sample[c];
     }
   }
 }
