@@ -149,14 +149,6 @@ void print_text(const Json& info, const std::string& indent) {
   }
 }
 
-std::string known_endings() {
-  std::string known;
-  for (const Format& format : formats()) {
-    known += std::string(format.ending) + " (" + std::string(format.name) + "), ";
-  }
-  return known + ".json (material)";
-}
-
 void info(const InfoOptions& options) {
   const Format* format = find_format(options.file);
   Json content;
@@ -165,9 +157,9 @@ void info(const InfoOptions& options) {
   } else if (std::filesystem::path(options.file).extension() == ".json") {
     content = material_info(options.file, read_material(options.file));
   } else {
-    throw InputError(options.file + ": the ending '" +
-                     std::filesystem::path(options.file).extension().string() +
-                     "' is not that of a table or a material; known: " + known_endings());
+    throw InputError(
+        options.file + ": the ending '" + std::filesystem::path(options.file).extension().string() +
+        "' is not that of a table or a material; known: " + table_endings() + ", .json (material)");
   }
   if (options.json) {
     std::cout << content.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';

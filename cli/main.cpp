@@ -76,6 +76,10 @@ int run(int argc, char** argv) {
   clothbrdf::add_eval_command(program);
   clothbrdf::add_tabulate_command(program);
   clothbrdf::add_info_command(program);
+  clothbrdf::add_preview_command(program);
+  clothbrdf::add_check_command(program);
+  clothbrdf::add_compare_command(program);
+  clothbrdf::add_convert_command(program);
 
   try {
     program.parse(argc, argv);
@@ -92,6 +96,8 @@ int run(int argc, char** argv) {
     return complain(error.what(), kBadInput);
   } catch (const clothbrdf::WorkError& error) {
     return complain(error.what(), kFailed);
+  } catch (const clothbrdf::Cancelled&) {
+    return complain("stopped; nothing was written", kFailed);
   } catch (const std::bad_alloc&) {
     return complain("out of memory", kFailed);
   } catch (const std::exception& error) {

@@ -1,8 +1,10 @@
 #include "cli/options.h"
 
 #include <charconv>
+#include <cmath>
 #include <sstream>
 
+#include "model/parameters.h"
 #include "support/errors.h"
 
 namespace clothbrdf {
@@ -49,17 +51,54 @@ CellRule parse_cells(const std::string& text) {
       "' is not allowed: point, average or average:REL, REL the relative tolerance from 1e-6 to 1");
 }
 
-int parse_threads(const std::string& text) {
-  constexpr int kMost = 1024;
-  int threads = 0;
+double parse_number(const std::string& option, const std::string& text, const NumberRange& range) {
+  double number = 0;
   const char* end = text.data() + text.size();
-  const auto [next, error] = std::from_chars(text.data(), end, threads);
-  if (error != std::errc() || next != end || threads < 1 || threads > kMost) {
-    throw InputError("--threads: '" + text + "' is not allowed: a whole number from 1 to " +
-                     std::to_string(kMost));
+  const auto [next, error] = std::from_chars(text.data(), end, number);
+  if (error != std::errc() || next != end || !(number >= range.lowest && number <= range.highest) ||
+      (range.whole && number != std::floor(number))) {
+    throw InputError(option + ": '" + text + "' is not allowed: a " +
+                     (range.whole ? "whole " : "") + "number from " + number_text(range.lowest) +
+                     " to " + number_text(range.highest));
   }
-  return threads;
+  return number;
 }
+
+int parse_threads(const std::string& text) {
+  constexpr double kMost = 1024;
+  return static_cast<int>(parse_number("--threads", text, {1, kMost, true}));
+}
+
+SheetDirection parse_direction(const std::string& option, const std::string& text) {
+  const char* const end = text.data() + text.size();
+  SheetDirection direction;
+  const auto [comma, error] = std::from_chars(text.data(), end, direction.theta_deg);
+  if (error == std::errc() && comma != end && *comma == ',') {
+    const auto [next, second_error] = std::from_chars(comma + 1, end, direction.phi_deg);
+    if (second_error == std::errc() && next == end && direction.theta_deg >= 0 &&
+        direction.theta_deg < 90 && std::isfinite(direction.phi_deg))
+      return direction;
+  }
+  throw InputError(option + ": '" + text +
+                   "' is not allowed: THETA,PHI in degrees, THETA from 0 to below 90");
+}
+
+std::string table_endings() {
+  std::string known;
+  for (const Format& format : formats()) {
+    known += (known.empty() ? "" : ", ") + std::string(format.ending) + " (" +
+             std::string(format.name) + ")";
+  }
+  return known;
+}
+
+std::string with_commas(std::uint64_t number) {
+  std::string digits = std::to_string(number);
+  for (std::size_t at = digits.size(); at > 3;) digits.insert(at -= 3, ",");
+  return digits;
+}
+
+Table read_table(const std::string& file) { return format_for(file).read(file); }
 
 std::string effects_text(const Effects& effects) {
   std::string text;

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 
+#include "formats/format.h"
 #include "model/effects.h"
+#include "preview/sheet.h"
 #include "table/table_spec.h"
 
 namespace clothbrdf {
@@ -18,6 +21,26 @@ CellRule parse_cells(const std::string& text);
 
 /// 1 to 1024.
 int parse_threads(const std::string& text);
+
+/// A number of an option, from lowest to highest.
+struct NumberRange {
+  double lowest;
+  double highest;
+  bool whole;
+};
+double parse_number(const std::string& option, const std::string& text, const NumberRange& range);
+
+/// "THETA,PHI" in degrees, theta from 0 to below 90.
+SheetDirection parse_direction(const std::string& option, const std::string& text);
+
+/// The endings of the tables that are read and written, for people.
+std::string table_endings();
+
+/// "1,458,000", for people.
+std::string with_commas(std::uint64_t number);
+
+/// Reads a table of any format.
+Table read_table(const std::string& file);
 
 /// "specular, diffuse", for people.
 std::string effects_text(const Effects& effects);

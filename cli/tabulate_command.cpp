@@ -77,12 +77,6 @@ bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
                        std::filesystem::weakly_canonical(b, ignored);
 }
 
-std::string with_commas(std::uint64_t number) {
-  std::string digits = std::to_string(number);
-  for (std::size_t at = digits.size(); at > 3;) digits.insert(at -= 3, ",");
-  return digits;
-}
-
 void report(const TabulateOptions& options, const Output& output, std::uint64_t bytes,
             double seconds) {
   const Grid& grid = output.spec.grid();

@@ -1,0 +1,208 @@
+#include <cmath>
+#include <filesystem>
+#include <iomanip>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cli/commands.h"
+#include "cli/options.h"
+#include "cli/progress_bar.h"
+#include "formats/format.h"
+#include "support/errors.h"
+#include "support/threads.h"
+#include "table/compare.h"
+#include "table/resample.h"
+
+namespace clothbrdf {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct ConvertOptions {
+  std::string in;
+  std::string out;
+  std::optional<std::string> grid;
+  std::optional<std::string> threads;
+  bool half = false;
+  bool compress = false;
+  bool json = false;
+};
+
+bool holds_components(const TableSpec& spec) {
+  for (const Channel& channel : spec.channels) {
+    if (channel.part != Part::kTotal) return true;
+  }
+  return false;
+}
+
+/// What the target can hold of a source.
+struct Target {
+  const Format* format;
+  WriteOptions write;
+  Grid grid;
+  bool components;
+};
+
+/// The source's own grid and all channels where the format takes them; else its default grid, and
+/// totals alone. Throws InputError where it takes none of them.
+Target choose_target(const ConvertOptions& options, const TableSpec& source,
+                     const Workers& workers) {
+  const Format& format = format_for(options.out);
+  const WriteOptions write{options.half, options.compress, workers};
+  const bool paper =
+      source.provenance.material && source.provenance.material->reflectance == Reflectance::kPaper;
+  const Grid standard = format.default_grid(paper ? Reflectance::kPaper : Reflectance::kMicrofacet);
+  std::vector<Grid> grids = {source.grid(), standard};
+  if (options.grid) grids = {parse_grid(*options.grid, standard.axes.back().highest_deg)};
+  for (const Grid& grid : grids) {
+    for (const bool components : {true, false}) {
+      TableSpec spec = source;
+      spec.samples = grid;
+      if (!components) {
+        std::erase_if(spec.channels, [](const Channel& c) { return c.part != Part::kTotal; });
+      }
+      try {
+        format.check(spec, write, options.out);
+        return {&format, write, grid, components && holds_components(source)};
+      } catch (const InputError&) {
+        if (!components && &grid == &grids.back()) throw;
+      }
+    }
+  }
+  throw std::logic_error("the last choice returns or throws");
+}
+
+std::vector<std::string> what_is_lost(const Table& source, const Target& target) {
+  const TableSpec& spec = source.spec();
+  std::vector<std::string> lost;
+  if (averages_rotations(spec.grid(), target.grid)) {
+    lost.emplace_back("anisotropy: the mean over rotations of the cloth");
+  }
+  const auto& material = spec.provenance.material;
+  const bool reciprocal = material && material->reflectance == Reflectance::kMicrofacet;
+  if (averages_orders(spec.grid(), target.grid) && !reciprocal) {
+    lost.emplace_back("the order of the directions: the mean of f(wi,wo) and f(wo,wi)");
+  }
+  if (spec.grid() != target.grid) {
+    lost.push_back("the nodes: resampled from " + spec.grid().description() + " to " +
+                   target.grid.description() + ", linear between nodes");
+  }
+  if (holds_components(spec) && !target.components) {
+    lost.emplace_back("the components: totals only");
+  }
+  const double rounding = target.format->precision(target.write).relative;
+  if (rounding > source.precision().relative) {
+    std::ostringstream text;
+    text << "digits: rounded by up to " << std::setprecision(2) << rounding << " of the value";
+    lost.push_back(text.str());
+  }
+  if (!target.format->keeps_description && !spec.provenance.program.empty()) {
+    lost.emplace_back("the description: material, effects and cells");
+  }
+  return lost;
+}
+
+/// The largest differences of any channel.
+ChannelDifference worst_of(const Comparison& comparison) {
+  ChannelDifference worst;
+  for (const ChannelDifference& d : comparison.channels) {
+    worst.rms = std::max(worst.rms, d.rms);
+    worst.p99 = std::max(worst.p99, d.p99);
+    worst.max = std::max(worst.max, d.max);
+  }
+  return worst;
+}
+
+void report(const ConvertOptions& options, const Target& target, const Table& table,
+            std::uint64_t bytes, const std::vector<std::string>& lost,
+            const std::optional<ChannelDifference>& error) {
+  const TableSpec& spec = table.spec();
+  if (options.json) {
+    Json json = {{"file", options.out},
+                 {"from", options.in},
+                 {"format", target.format->name},
+                 {"grid", spec.grid().description()},
+                 {"cells", spec.cell_count()},
+                 {"channels", spec.channels.size()},
+                 {"bytes", bytes},
+                 {"lost", lost}};
+    if (error) json["error"] = {{"rms", error->rms}, {"p99", error->p99}, {"max", error->max}};
+    std::cout << json.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
+    return;
+  }
+  std::cout << options.out << ": " << target.format->name << ' ' << spec.grid().description()
+            << ", " << with_commas(spec.cell_count()) << " cells of " << spec.channels.size()
+            << " channels, " << with_commas(bytes) << " bytes, from " << options.in << '\n';
+  for (const std::string& what : lost) std::cout << "  lost: " << what << '\n';
+  if (error) {
+    std::cout << std::setprecision(3) << "  error at the old nodes: rms " << error->rms << ", p99 "
+              << error->p99 << ", max " << error->max << '\n';
+  }
+  if (lost.empty()) std::cout << "  lost: nothing\n";
+}
+
+void convert(const ConvertOptions& options) {
+  const int threads = options.threads ? parse_threads(*options.threads) : default_threads();
+  format_for(options.out);  // before a large table is read
+  Table table = read_table(options.in);
+  ProgressBar bar;
+  const Workers workers{threads, &bar.progress()};
+  const Target target = choose_target(options, table.spec(), workers);
+  AtomicFile file(options.out);
+  const std::vector<std::string> lost = what_is_lost(table, target);
+  if (holds_components(table.spec()) && !target.components) table = without_components(table);
+  std::optional<ChannelDifference> error;
+  if (target.grid != table.spec().grid()) {
+    bar.progress().begin("resampling", target.grid.cell_count(), "cells");
+    Table resampled = resample(table, target.grid, workers);
+    bar.progress().begin("measuring the error", table.spec().cell_count(), "cells");
+    error = worst_of(compare(table, resampled, workers));
+    table = std::move(resampled);
+  }
+  bar.progress().begin(options.out, table.spec().cell_count(), "cells");
+  target.format->write(table, file, target.write);
+  const std::uint64_t bytes = file.size();
+  file.commit();
+  bar.clear();
+  report(options, target, table, bytes, lost, error);
+}
+
+}  // namespace
+
+void add_convert_command(CLI::App& program) {
+  const auto options = std::make_shared<ConvertOptions>();
+  CLI::App* command = program.add_subcommand(
+      "convert",
+      "Writes a table in another format or on another grid, and says what is lost. The grid stays "
+      "where the format can hold it.\n"
+      "Example: clothbrdf convert silk.exr silk.binary");
+  command->add_option("IN", options->in, "table to read (" + table_endings() + ")")
+      ->required()
+      ->type_name("FILE");
+  command->add_option("OUT", options->out, "table to write; the format follows the ending")
+      ->required()
+      ->type_name("FILE");
+  const auto optional = [&](const char* name, std::optional<std::string>& value, const char* type,
+                            const char* help) {
+    command
+        ->add_option_function<std::string>(
+            name, [options, &value](const std::string& text) { value = text; }, help)
+        ->type_name(type);
+  };
+  optional("--grid", options->grid, "GRID",
+           "halfdiff3d[:THxTDxPD], halfdiff4d[:THxPHxTDxPD] or inout[:TIxPIxTOxPO]");
+  command->add_flag("--half", options->half,
+                    "16-bit floats (EXR); a value that does not fit is an error");
+  command->add_flag("--compress", options->compress, "compress without loss (EXR)");
+  optional("--threads", options->threads, "N", "1 to 1024; all processors where left out");
+  command->add_flag("--json", options->json, "say what was written as one JSON object");
+  command->callback([options] { convert(*options); });
+}
+
+}  // namespace clothbrdf
