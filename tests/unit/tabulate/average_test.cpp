@@ -1,8 +1,10 @@
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <iostream>
 #include <numbers>
 #include <optional>
+#include <thread>
 
 #include "model/reflectance.h"
 #include "table/table.h"
@@ -11,6 +13,7 @@
 #include "tabulate/model_producer.h"
 #include "tabulate/quadrature.h"
 #include "tests/catch.h"
+#include "tests/support/make_table.h"
 #include "tests/support/random_inputs.h"
 
 namespace clothbrdf::test {
@@ -243,6 +246,24 @@ TEST_CASE("averages of in/out cells find narrow lobes, or say that they cannot")
   };
   CHECK(std::abs(mean(1, 1e-3) / 0.0072773 - 1) <= 1e-3);
   CHECK_THROWS_WITH(mean(0.001, 1e-2), ContainsSubstring("too narrow for cells of inout:1x1x1x1"));
+}
+
+TEST_CASE("an average is given up amid a cell or a row once the work is cancelled") {
+  // At the tightest tolerance, a single cell of all directions and a single row: both take a
+  // minute or more.
+  const Material silk = read_material(preset("silk"));
+  for (const Grid& grid : {inout(1, 1, 1, 1), halfdiff3d(1, 400, 400)}) {
+    Progress progress;
+    const auto producer =
+        make_producer(material_spec(silk, {}, grid, {true, kTightestAverage}), {1, &progress});
+    std::vector<double> row(producer->spec().row_values());
+    std::thread patience([&] {
+      std::this_thread::sleep_for(std::chrono::milliseconds(200));
+      progress.cancel();
+    });
+    CHECK_THROWS_AS(producer->fill_rows(0, row), Cancelled);
+    patience.join();
+  }
 }
 
 TEST_CASE("adaptive cubature integrates what has a closed form to its tolerance") {

@@ -186,4 +186,19 @@ TEST_CASE("a table that cannot be made is refused before any work") {
                   std::invalid_argument);
 }
 
+TEST_CASE("what all rows share is given up, too, once the work is cancelled") {
+  RandomInputs random(seed_from_environment());
+  const Material material = random_material(random, Reflectance::kMicrofacet);
+  for (const Grid& grid : {halfdiff3d(), inout()}) {
+    for (const bool average : {false, true}) {
+      Progress progress;
+      const Workers workers(2, &progress);
+      progress.cancel();
+      const TableSpec spec = material_spec(material, {}, grid, {.average = average});
+      std::vector<double> row(spec.row_values());
+      CHECK_THROWS_AS(make_producer(spec, workers)->fill_rows(0, row), Cancelled);
+    }
+  }
+}
+
 }  // namespace clothbrdf::test
