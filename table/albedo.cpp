@@ -16,6 +16,8 @@ namespace {
 
 constexpr double kRadian = std::numbers::pi / 180;
 constexpr int kAzimuths = 16;
+// Azimuths that a symmetry makes equal differ by roundings; the first of them is named.
+constexpr double kTie = 1e-9;
 
 /// Steps of a rule of midpoints in theta and in phi, degrees.
 struct Step {
@@ -112,10 +114,10 @@ std::vector<double> incident_thetas(const Grid& grid) {
   std::vector<double> thetas;
   for (double theta = 0; theta <= kHighestTheta; theta += 5) thetas.push_back(theta);
   thetas.push_back(kBeyond);
-  if (grid.kind == GridKind::kInOut) {
-    const double last = grid.axes[0].node_deg(grid.axes[0].size - 1);
-    std::erase_if(thetas, [&](double theta) { return theta > last; });
-  }
+  const bool over_wo = grid.kind == GridKind::kInOut;
+  const Axis& axis = over_wo ? grid.axes[0] : grid.axes[grid.axes.size() - 2];
+  const double steepest = over_wo ? axis.node_deg(axis.size - 1) : axis.edge_deg(axis.size - 1);
+  std::erase_if(thetas, [&](double theta) { return theta > steepest; });
   return thetas;
 }
 
@@ -155,9 +157,11 @@ std::vector<Albedo> albedo_by_theta(const Table& table, const Workers& workers) 
   std::vector<Albedo> by_theta;
   for (std::size_t t = 0; t < thetas.size(); ++t) {
     const auto first = all.begin() + static_cast<std::ptrdiff_t>(t) * azimuths;
-    by_theta.push_back(
-        *std::max_element(first, first + azimuths,
-                          [](const Albedo& a, const Albedo& b) { return a.value < b.value; }));
+    Albedo largest = *first;
+    for (const Albedo& albedo : std::span(first, static_cast<std::size_t>(azimuths))) {
+      if (albedo.value > largest.value * (1 + kTie)) largest = albedo;
+    }
+    by_theta.push_back(largest);
   }
   return by_theta;
 }

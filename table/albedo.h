@@ -20,8 +20,13 @@ struct Albedo {
 /// The steepest incidence at which an albedo is judged, degrees.
 inline constexpr double kHighestTheta = 85;
 
-/// For theta_i = 0, 5 ... 85 and 89 degrees: the largest albedo over channels and 16 azimuths of
-/// the light (one, where the table knows none).
+/// For theta_i = 0, 5 ... 85 and 89 degrees, as far as the table goes: the largest albedo over
+/// channels and 16 azimuths of the light (one, where the table knows none). In/out tables go to
+/// their last node, half/difference tables to the last cell of theta_d.
+///
+/// Half/difference tables are integrated over half vectors, in steps half as wide as their cells;
+/// what is interpolated is f_r cos(theta_i) cos(theta_o), which stays bounded near the horizon.
+/// In/out tables are integrated over wo, in steps of at most 2 degrees, with f_r interpolated.
 std::vector<Albedo> albedo_by_theta(const Table& table, const Workers& workers);
 
 }  // namespace clothbrdf

@@ -77,7 +77,7 @@ TEST_CASE("the README's session runs as printed") {
     CHECK(masked(read_file(printed)) == masked(expected));
     ++commands;
   }
-  CHECK(commands == 6);
+  CHECK(commands == 11);
 }
 
 TEST_CASE("the README's material is the preset silk") {
