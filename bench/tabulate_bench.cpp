@@ -2,19 +2,25 @@
 // cells, or pairs of directions, per second of processor time.
 
 #include <benchmark/benchmark.h>
+#include <hwy/targets.h>
 
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <cstring>
 #include <memory>
 #include <random>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "bench/peak.h"
 #include "formats/material_json.h"
 #include "model/degrees.h"
 #include "model/reflectance.h"
 #include "table/producer.h"
+#include "tabulate/batch.h"
 #include "tabulate/model_producer.h"
 
 namespace clothbrdf {
@@ -30,6 +36,12 @@ Material two_yarns() {
   material.paths = Paths::kSingle;
   material.warp.layers = 6;
   material.weft.layers = 6;
+  return material;
+}
+
+Material two_yarns_all() {
+  Material material = two_yarns();
+  material.paths = Paths::kAll;
   return material;
 }
 
@@ -64,6 +76,77 @@ void evaluate(benchmark::State& state, const Material& material) {
   count_cells(state, pairs.size());
 }
 
+/// Arrays of directions for the batch evaluator.
+template <class T>
+struct Batch {
+  explicit Batch(std::size_t count) {
+    for (const DirectionPair& pair : random_pairs(count)) {
+      const Vector3<double> wi = direction(pair.theta_i, pair.phi_i);
+      const Vector3<double> wo = direction(pair.theta_o, pair.phi_o);
+      for (std::size_t k = 0; k < 3; ++k) {
+        in[k].push_back(static_cast<T>(wi[k]));
+        in[3 + k].push_back(static_cast<T>(wo[k]));
+      }
+    }
+  }
+  std::array<std::vector<T>, 6> in;
+};
+
+/// The batch evaluator, with registers of every width or only of those in `targets`.
+template <class T>
+void batch(benchmark::State& state, const Material& material, std::int64_t targets) {
+  hwy::SetSupportedTargetsForTest(targets);
+  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  const ClothModel<double> model(material);
+  const BatchEvaluator<T> evaluator(model, material_channels(material, false), 1);
+  constexpr std::size_t kPairs = 4096;
+  const Batch<T> pairs(kPairs);
+  std::array<std::vector<T>, 3> f;
+  std::array<T*, 3> to{};
+  for (std::size_t c = 0; c < 3; ++c) {
+    f[c].resize(kPairs);
+    to[c] = f[c].data();
+  }
+  for (auto _ : state) {
+    evaluator.evaluate({{pairs.in[0].data(), pairs.in[1].data(), pairs.in[2].data()},
+                        {pairs.in[3].data(), pairs.in[4].data(), pairs.in[5].data()},
+                        kPairs},
+                       to);
+    benchmark::DoNotOptimize(f);
+    benchmark::ClobberMemory();
+  }
+  state.counters["multiply_adds"] = static_cast<double>(evaluator.multiply_adds());
+  count_cells(state, kPairs);
+  hwy::SetSupportedTargetsForTest(0);
+  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+}
+
+/// Preparing a batch evaluator.
+template <class T>
+void batch_setup(benchmark::State& state, const Material& material) {
+  const ClothModel<double> model(material);
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(BatchEvaluator<T>(model, material_channels(material, false), 1));
+  }
+}
+
+/// The machine's own limits: float multiply-adds, and bytes written to memory.
+void peak_multiply_adds(benchmark::State& state) {
+  constexpr std::size_t kSteps = 100000;
+  for (auto _ : state) benchmark::DoNotOptimize(multiply_add_loop(kSteps));
+  count_cells(state, kSteps * multiply_adds_a_step());
+}
+
+void peak_memory_writes(benchmark::State& state) {
+  std::vector<char> memory(std::size_t{64} << 20U);
+  char value = 0;
+  for (auto _ : state) {
+    std::memset(memory.data(), ++value, memory.size());
+    benchmark::ClobberMemory();
+  }
+  count_cells(state, memory.size());
+}
+
 /// What all rows share.
 void setup(benchmark::State& state, const TableSpec& spec) {
   for (auto _ : state) benchmark::DoNotOptimize(make_producer(spec, 1));
@@ -84,9 +167,9 @@ void rows(benchmark::State& state, const TableSpec& spec, std::size_t step) {
 }
 
 /// All that `tabulate` computes, as its writers ask for it.
-void compute(benchmark::State& state, const TableSpec& spec) {
+void compute(benchmark::State& state, const TableSpec& spec, int threads, Precision precision) {
   for (auto _ : state) {
-    stream_rows(*make_producer(spec, 1), 1,
+    stream_rows(*make_producer(spec, threads, precision), threads,
                 [](std::size_t /*first_row*/, std::span<double> values) {
                   benchmark::DoNotOptimize(values.data());
                 });
@@ -116,13 +199,42 @@ void register_all() {
   add("evaluate/two_yarns_single", evaluate, two_yarns());
   add("setup/silk.binary", setup, merl);
   add_rows("rows/silk.binary", silk, halfdiff3d());
-  add("compute/silk.binary", compute, merl);
+  add("compute/silk.binary", compute, merl, 1, Precision::kDouble);
   add_rows("rows/two_yarns_single.binary", two_yarns(), halfdiff3d());
   add_rows("rows/halfdiff4d", silk, halfdiff4d());
   add_rows("rows/inout", silk, inout());
   add_rows("average/silk.binary", silk, halfdiff3d(), average, 30);
   add_rows("average/halfdiff4d", silk, halfdiff4d(), average, 500);
   add_rows("average/inout", silk, inout(), average, 60);
+  for (const bool avx2 : {false, true}) {
+    const std::int64_t targets = avx2 ? HWY_AVX2 | HWY_SSE4 : 0;
+    const std::string width = avx2 ? "_avx2" : "";
+    add("batch" + width + "/two_yarns_single", batch<float>, two_yarns(), targets);
+    add("batch" + width + "/two_yarns_all", batch<float>, two_yarns_all(), targets);
+  }
+  add("batch/silk", batch<float>, silk, 0);
+  add("batch_double/two_yarns_single", batch<double>, two_yarns(), 0);
+  add("batch_double/silk", batch<double>, silk, 0);
+  add("batch_setup/silk", batch_setup<float>, silk);
+  add("batch_setup_double/silk", batch_setup<double>, silk);
+  add("peak/multiply_adds", peak_multiply_adds);
+  add("peak/memory_writes", peak_memory_writes);
+  // Wall-clock time: what a second thread is for.
+  const auto add_threads = [&](const std::string& name, const TableSpec& spec,
+                               Precision precision) {
+    for (const int threads : {1, 2}) {
+      benchmark::RegisterBenchmark((name + "/" + std::to_string(threads)).c_str(), compute, spec,
+                                   threads, precision)
+          ->UseRealTime()
+          ->MinTime(0.2)
+          ->Repetitions(5)
+          ->DisplayAggregatesOnly()
+          ->Unit(benchmark::kMicrosecond);
+    }
+  };
+  add_threads("threads_inout", material_spec(silk, {}, inout(24, 48, 24, 48)), Precision::kDouble);
+  add_threads("threads_average", material_spec(silk, {}, inout(3, 6, 3, 6), average),
+              Precision::kDouble);
 }
 
 }  // namespace

@@ -108,8 +108,11 @@ void write(const TabulateOptions& options, const Output& output, AtomicFile& fil
            Workers workers) {
   workers.progress->begin(output.path.filename().string(), output.spec.grid().cell_count(),
                           "cells");
-  const std::unique_ptr<Producer> producer = make_producer(output.spec, workers);
-  output.format->write(*producer, file, {options.half, options.compress, workers});
+  const WriteOptions write_options{options.half, options.compress, workers};
+  const bool single = output.format->precision(write_options).relative >= 0x1p-24;
+  const std::unique_ptr<Producer> producer =
+      make_producer(output.spec, workers, single ? Precision::kSingle : Precision::kDouble);
+  output.format->write(*producer, file, write_options);
   workers.check();
   file.commit();
 }

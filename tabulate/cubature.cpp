@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 
 namespace clothbrdf {
 namespace {
@@ -33,14 +34,29 @@ class GenzMalik {
       half_[i] = (box.high[i] - box.low[i]) / 2;
       volume *= 2 * half_[i];
     }
+    points_.clear();
+    add({});
+    for (std::size_t i = 0; i < 4; ++i) {
+      add({{i, kNear}});
+      add({{i, kFar}});
+    }
+    for (std::size_t i = 0; i < 4; ++i) {
+      for (std::size_t j = i + 1; j < 4; ++j) add({{i, kFar}, {j, kFar}});
+    }
+    add({{0, kCorner}, {1, kCorner}, {2, kCorner}, {3, kCorner}});
+    values_.resize(points_.size() * count_);
+    integrand_(points_, values_);
+
+    // In the same order.
+    next_ = 0;
     Part part{box, std::vector<double>(count_), std::vector<double>(count_)};
-    const std::vector<double> centre = sum_at({});
+    const std::vector<double> centre = sum(1);
     std::vector<double> near(count_);
     std::vector<double> far(count_);
     double roughest = -1;
     for (std::size_t i = 0; i < 4; ++i) {
-      const std::vector<double> n = sum_at({{i, kNear}});
-      const std::vector<double> f = sum_at({{i, kFar}});
+      const std::vector<double> n = sum(2);
+      const std::vector<double> f = sum(2);
       double difference = 0;
       for (std::size_t c = 0; c < count_; ++c) {
         difference += std::abs(n[c] - 2 * centre[c] - kRatio * (f[c] - 2 * centre[c]));
@@ -52,15 +68,8 @@ class GenzMalik {
         part.roughest = i;
       }
     }
-    std::vector<double> edges(count_);
-    for (std::size_t i = 0; i < 4; ++i) {
-      for (std::size_t j = i + 1; j < 4; ++j) {
-        const std::vector<double> e = sum_at({{i, kFar}, {j, kFar}});
-        for (std::size_t c = 0; c < count_; ++c) edges[c] += e[c];
-      }
-    }
-    const std::vector<double> corners =
-        sum_at({{0, kCorner}, {1, kCorner}, {2, kCorner}, {3, kCorner}});
+    const std::vector<double> edges = sum(24);
+    const std::vector<double> corners = sum(16);
     for (std::size_t c = 0; c < count_; ++c) {
       // The weights for four variables.
       part.integral[c] = volume / 19683 *
@@ -79,26 +88,35 @@ class GenzMalik {
     double steps;  // of half the box's width
   };
 
-  // Sum over all signs of the offsets.
-  std::vector<double> sum_at(const std::vector<Offset>& offsets) {
-    std::vector<double> sum(count_);
-    std::vector<double> values(count_);
+  // The points at all signs of the offsets.
+  void add(std::initializer_list<Offset> offsets) {
     for (std::size_t signs = 0; signs < (std::size_t{1} << offsets.size()); ++signs) {
-      std::array<double, 4> at = centre_;
-      for (std::size_t k = 0; k < offsets.size(); ++k) {
-        const double step = offsets[k].steps * half_[offsets[k].variable];
-        at[offsets[k].variable] += (signs >> k & 1U) != 0 ? -step : step;
+      Point4 at = centre_;
+      std::size_t k = 0;
+      for (const Offset& offset : offsets) {
+        const double step = offset.steps * half_[offset.variable];
+        at[offset.variable] += (signs >> k++ & 1U) != 0 ? -step : step;
       }
-      integrand_(at, values);
-      for (std::size_t c = 0; c < count_; ++c) sum[c] += values[c];
+      points_.push_back(at);
+    }
+  }
+
+  // The sums of the next so many values.
+  std::vector<double> sum(std::size_t points) {
+    std::vector<double> sum(count_);
+    for (; points > 0; --points, ++next_) {
+      for (std::size_t c = 0; c < count_; ++c) sum[c] += values_[next_ * count_ + c];
     }
     return sum;
   }
 
   const Integrand4& integrand_;
   std::size_t count_;
-  std::array<double, 4> centre_{};
-  std::array<double, 4> half_{};
+  Point4 centre_{};
+  Point4 half_{};
+  std::vector<Point4> points_;
+  std::vector<double> values_;  // [point][function]
+  std::size_t next_ = 0;
 };
 
 std::vector<double> total(const std::vector<Part>& parts, std::vector<double> Part::*what,

@@ -15,8 +15,9 @@ struct Box4 {
   std::array<double, 4> high;
 };
 
-/// Writes the values of a vector of functions at a point.
-using Integrand4 = std::function<void(const std::array<double, 4>& at, std::span<double> values)>;
+/// Writes the values of several functions at many points, values[point][function].
+using Point4 = std::array<double, 4>;
+using Integrand4 = std::function<void(std::span<const Point4> points, std::span<double> values)>;
 
 /// The variable along which a part must be halved before its rule can be trusted; none where it
 /// can.

@@ -6,74 +6,59 @@
 
 #include "model/parameters.h"
 #include "support/errors.h"
-#include "tabulate/path_panels.h"
 
 namespace clothbrdf {
 namespace {
 
 constexpr double kRadian = std::numbers::pi / 180;
-constexpr double kInterpolationShare = 0.1;
-constexpr std::size_t kMostPanels = 2048;
-
-// Path weights change fastest at grazing incidence, so panels are equal in log(cos_theta_d + 0.005)
-// (model.md 8.2).
-constexpr double kShift = 0.005;
-const double kLowest = std::log(kShift);
-const double kRange = std::log(1 + kShift) - kLowest;
-
-double cosine_at(double share) {
-  return std::clamp(std::exp(kLowest + share * kRange) - kShift, 0.0, 1.0);
-}
-double share_of(double cosine) { return (std::log(cosine + kShift) - kLowest) / kRange; }
-
 }  // namespace
 
+/// Arrays for the pairs of one call.
 struct InOutAverage::Workspace {
-  Workspace(const ClothModel<double>& model, const PathMatrix& paths)
-      : density(paths.lobe_count()), sums(model, kPolynomialNodes) {}
-  std::vector<double> density;
-  ChannelSums sums;
+  explicit Workspace(std::size_t channels) : f(channels) {}
+
+  void resize(std::size_t count) {
+    for (std::vector<double>& coordinate : directions) coordinate.resize(count);
+    for (std::vector<double>& channel : f) channel.resize(count);
+  }
+
+  std::array<std::vector<double>, 6> directions;  // wi, wo
+  std::vector<std::vector<double>> f;             // [channel][pair]
 };
 
 InOutAverage::InOutAverage(const TableSpec& spec, const ClothModel<double>& model, Workers workers)
-    : spec_(spec), model_(model), workers_(workers) {
+    : spec_(spec), workers_(workers), evaluator_(model, spec.channels, workers) {
   for (const PreparedYarn<double>& y : model.yarns()) {
     for (const double axis : y.yarn.lobe_axes) narrowest_axis_ = std::min(narrowest_axis_, axis);
   }
-  const double tolerance = kInterpolationShare * spec.cells.tolerance;
-  while (true) {
-    const PanelCosine cosine = [this](double at) {
-      return cosine_at(at / static_cast<double>(panels_));
-    };
-    paths_ = std::make_unique<PathMatrix>(panel_paths(model, panels_, cosine, workers));
-    if (panels_ >= kMostPanels || panels_suffice(model, *paths_, cosine, tolerance, workers))
-      return;
-    panels_ *= 2;
-  }
 }
 
-// The directional part of all channels, times the sines of the measure.
-void InOutAverage::directional(const std::array<double, 4>& at, Workspace& work,
-                               std::span<double> values) const {
-  const Vector3<double> wi = {std::sin(at[0]) * std::cos(at[1]), std::sin(at[0]) * std::sin(at[1]),
-                              std::cos(at[0])};
-  const Vector3<double> wo = {std::sin(at[2]) * std::cos(at[3]), std::sin(at[2]) * std::sin(at[3]),
-                              std::cos(at[2])};
-  const PairGeometry<double> g = pair_geometry(wi, wo, model_.material().rotation_deg);
-  const double factor = directional_factor(model_.material().reflectance, g.h_n, g.cos_theta_d,
-                                           g.cos_theta_i, g.cos_theta_o);
-  const double place = share_of(g.cos_theta_d) * static_cast<double>(panels_);
-  const double panel = std::clamp(std::floor(place), 0.0, static_cast<double>(panels_ - 1));
-  paths_->densities(g.h_weft, g.h_warp, g.h_n, work.density);
-  paths_->sums(work.density, static_cast<std::size_t>(panel) * kPolynomialNodes,
-               work.sums.specular(), work.sums.internal());
-  const PolynomialWeights weights = polynomial_weights(place - panel);
-  for (std::size_t c = 0; c < values.size(); ++c) {
-    values[c] = 0;
-    for (std::size_t n = 0; n < kPolynomialNodes; ++n) {
-      values[c] += weights[n] * work.sums.directional(spec_.channels[c], n);
+// f of all channels, times the sines of the measure.
+void InOutAverage::weighted(std::span<const Point4> points, Workspace& work,
+                            std::span<double> values) const {
+  workers_.check();  // here, as one cell can take minutes
+  work.resize(points.size());
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    for (std::size_t side = 0; side < 2; ++side) {
+      const double theta = points[p][2 * side];
+      const double phi = points[p][2 * side + 1];
+      work.directions[3 * side][p] = std::sin(theta) * std::cos(phi);
+      work.directions[3 * side + 1][p] = std::sin(theta) * std::sin(phi);
+      work.directions[3 * side + 2][p] = std::cos(theta);
     }
-    values[c] *= factor * std::sin(at[0]) * std::sin(at[2]);
+  }
+  const auto side = [&](std::size_t first) {
+    return std::array<const double*, 3>{work.directions[first].data(),
+                                        work.directions[first + 1].data(),
+                                        work.directions[first + 2].data()};
+  };
+  std::vector<double*> to;
+  for (std::vector<double>& channel : work.f) to.push_back(channel.data());
+  evaluator_.evaluate({side(0), side(3), points.size()}, to);
+  const std::size_t channels = work.f.size();
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    const double sines = std::sin(points[p][0]) * std::sin(points[p][2]);
+    for (std::size_t c = 0; c < channels; ++c) values[p * channels + c] = sines * work.f[c][p];
   }
 }
 
@@ -101,9 +86,9 @@ std::optional<std::size_t> InOutAverage::coarse_variable(const Box4& part) const
 }
 
 void InOutAverage::fill_rows(std::size_t first_row, std::span<double> values) const {
-  Workspace work(model_, *paths_);
   const std::size_t columns = spec_.column_count();
   const std::size_t channels = spec_.channels.size();
+  Workspace work(channels);
   for (std::size_t i = 0; i < values.size() / spec_.row_values() * columns; ++i) {
     const std::array<int, 4> index = spec_.grid().indices(first_row * columns + i);
     Box4 box{};
@@ -117,10 +102,7 @@ void InOutAverage::fill_rows(std::size_t first_row, std::span<double> values) co
           elevation ? std::cos(box.low[a]) - std::cos(box.high[a]) : box.high[a] - box.low[a];
     }
     const std::optional<std::vector<double>> integral = integrate4(
-        [&](const std::array<double, 4>& at, std::span<double> f) {
-          workers_.check();  // here, as one cell can take minutes
-          directional(at, work, f);
-        },
+        [&](std::span<const Point4> points, std::span<double> f) { weighted(points, work, f); },
         box, channels, spec_.cells.tolerance,
         [&](const Box4& part) { return coarse_variable(part); });
     if (!integral) {
@@ -130,8 +112,7 @@ void InOutAverage::fill_rows(std::size_t first_row, std::span<double> values) co
                       "; take a finer grid, a looser tolerance or --cells point");
     }
     for (std::size_t c = 0; c < channels; ++c) {
-      values[(i / columns * channels + c) * columns + i % columns] =
-          (*integral)[c] / measure + work.sums.constant(spec_.channels[c]);
+      values[(i / columns * channels + c) * columns + i % columns] = (*integral)[c] / measure;
     }
   }
 }

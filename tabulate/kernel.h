@@ -8,12 +8,21 @@
 
 namespace clothbrdf {
 
+/// How exactly a kernel works.
+enum class Precision {
+  kDouble,  ///< as the model, to rounding
+  kSingle,  ///< for files of 32-bit floats: where directions are arbitrary (in/out points), to 5e-6
+};
+
 /// Values of whole rows of one kind of grid: the grid's part of a Producer.
 class Kernel {
  public:
   virtual ~Kernel() = default;
   virtual void fill_rows(std::size_t first_row, std::span<double> values) const = 0;
 };
+
+/// The value of a channel.
+double channel_value(const Components& f, const Channel& channel);
 
 /// The sums over lobes and the diffuse term for one half vector, ready for the channels of a table:
 /// f = factor * sums(channel)[k] + diffuse(channel).

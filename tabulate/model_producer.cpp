@@ -14,26 +14,16 @@
 namespace clothbrdf {
 namespace {
 
-double channel_value(const Components& f, const Channel& channel) {
-  switch (channel.part) {
-    case Part::kSpecular: return f.specular[channel.colour];
-    case Part::kInternal: return f.internal[channel.colour];
-    case Part::kDiffuse: return f.diffuse[channel.colour];
-    case Part::kTotal: break;
-  }
-  return f.total(channel.colour);
-}
-
 class ModelProducer final : public Producer {
  public:
-  ModelProducer(const TableSpec& spec, Workers workers)
+  ModelProducer(const TableSpec& spec, Workers workers, Precision precision)
       : spec_(spec), model_(*spec.provenance.material, spec.provenance.effects) {
     if (!spec_.has_grid()) return;
     if (spec_.grid().kind == GridKind::kInOut) {
       if (spec_.cells.average) {
         kernel_ = std::make_unique<InOutAverage>(spec_, model_, workers);
       } else {
-        kernel_ = std::make_unique<InOutPoints>(spec_, model_, workers);
+        kernel_ = std::make_unique<InOutPoints>(spec_, model_, precision, workers);
       }
     } else if (spec_.cells.average) {
       kernel_ = std::make_unique<HalfDifferenceAverage>(spec_, model_, workers);
@@ -98,9 +88,10 @@ void check_producible(const TableSpec& spec) {
   }
 }
 
-std::unique_ptr<Producer> make_producer(const TableSpec& spec, Workers workers) {
+std::unique_ptr<Producer> make_producer(const TableSpec& spec, Workers workers,
+                                        Precision precision) {
   check_producible(spec);
-  return std::make_unique<ModelProducer>(spec, workers);
+  return std::make_unique<ModelProducer>(spec, workers, precision);
 }
 
 }  // namespace clothbrdf

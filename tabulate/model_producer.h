@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "table/producer.h"
+#include "tabulate/kernel.h"
 
 namespace clothbrdf {
 
@@ -19,6 +20,7 @@ void check_producible(const TableSpec& spec);
 /// The values of a table made of the material that its provenance names, from the kernel that fits
 /// its samples. What all rows share is computed here, by the workers; the producer, too, throws
 /// Cancelled within about a second once their progress is cancelled.
-std::unique_ptr<Producer> make_producer(const TableSpec& spec, Workers workers);
+std::unique_ptr<Producer> make_producer(const TableSpec& spec, Workers workers,
+                                        Precision precision = Precision::kDouble);
 
 }  // namespace clothbrdf

@@ -268,9 +268,13 @@ TEST_CASE("an average is given up amid a cell or a row once the work is cancelle
 
 TEST_CASE("adaptive cubature integrates what has a closed form to its tolerance") {
   const Box4 box{{0, 0, 0, 0}, {1, 2, 1, 1}};
-  const auto integrand = [](const std::array<double, 4>& x, std::span<double> f) {
-    f[0] = x[0] * x[1] * x[1] * x[2] * x[3];                           // 1/2 * 8/3 * 1/2 * 1/2
-    f[1] = 1 / (1e-2 + (x[0] - 0.3) * (x[0] - 0.3)) * std::exp(x[1]);  // a peak in one variable
+  const auto integrand = [](std::span<const Point4> points, std::span<double> values) {
+    for (std::size_t p = 0; p < points.size(); ++p) {
+      const auto& [x0, x1, x2, x3] = points[p];
+      values[2 * p] = x0 * x1 * x1 * x2 * x3;  // 1/2 * 8/3 * 1/2 * 1/2
+      values[2 * p + 1] =
+          1 / (1e-2 + (x0 - 0.3) * (x0 - 0.3)) * std::exp(x1);  // a peak in one variable
+    }
   };
   const auto none_coarse = [](const Box4&) -> std::optional<std::size_t> { return std::nullopt; };
   const std::vector<double> integral = integrate4(integrand, box, 2, 1e-6, none_coarse).value();

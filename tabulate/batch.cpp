@@ -1,0 +1,79 @@
+#include "tabulate/batch.h"
+
+#include <utility>
+
+#include "tabulate/batch_kernel.h"
+#include "tabulate/kernel.h"
+
+namespace clothbrdf {
+namespace {
+
+// Half of what is promised: the rest is for rounding.
+template <class T>
+constexpr double kLobeTolerance = sizeof(T) == sizeof(float) ? 1e-6 : 1e-13;
+template <class T>
+constexpr double kTableTolerance = sizeof(T) == sizeof(float) ? 1.5e-6 : 4e-13;
+
+}  // namespace
+
+template <class T>
+BatchEvaluator<T>::BatchEvaluator(const ClothModel<double>& model, std::vector<Channel> channels,
+                                  Workers workers)
+    : lanes_(model, std::move(channels), kLobeTolerance<T>) {
+  if (lanes_.error() <= kLobeTolerance<T>)
+    table_ = weight_table<T>(lanes_, kTableTolerance<T>, workers);
+  weft_.assign(table_.lanes, T(1));
+  warp_.assign(table_.lanes, T(1));
+  for (std::size_t l = 0; l < lanes_.size() && tabulated(); ++l) {
+    weft_[l] = static_cast<T>(lanes_.weft()[l]);
+    warp_[l] = static_cast<T>(lanes_.warp()[l]);
+  }
+  for (std::size_t c = 0; c < lanes_.channels().size(); ++c) {
+    constants_.push_back(static_cast<T>(lanes_.constant(c)));
+  }
+}
+
+template <class T>
+void BatchEvaluator<T>::evaluate(const DirectionArrays<T>& directions,
+                                 std::span<T* const> values) const {
+  if (!tabulated()) return evaluate_directly(directions, values);
+  const SinCos<double> turn = sincosd(lanes_.model().material().rotation_deg);
+  run_batch({.weft = weft_.data(),
+             .warp = warp_.data(),
+             .coefficients = table_.coefficients.get(),
+             .lanes = table_.lanes,
+             .channels = table_.channels,
+             .piece_bits = table_.piece_bits,
+             .turn_sin = static_cast<T>(turn.sin),
+             .turn_cos = static_cast<T>(turn.cos),
+             .microfacet = lanes_.model().material().reflectance == Reflectance::kMicrofacet,
+             .constants = constants_.data()},
+            directions, values.data());
+}
+
+template <class T>
+void BatchEvaluator<T>::evaluate_directly(const DirectionArrays<T>& directions,
+                                          std::span<T* const> values) const {
+  const ClothModel<double>& model = lanes_.model();
+  for (std::size_t p = 0; p < directions.count; ++p) {
+    const auto vector = [&](const std::array<const T*, 3>& w) {
+      return Vector3<double>{double{w[0][p]}, double{w[1][p]}, double{w[2][p]}};
+    };
+    const Components f = model.evaluate(
+        pair_geometry(vector(directions.wi), vector(directions.wo), model.material().rotation_deg));
+    for (std::size_t c = 0; c < lanes_.channels().size(); ++c) {
+      values[c][p] = static_cast<T>(channel_value(f, lanes_.channels()[c]));
+    }
+  }
+}
+
+template <class T>
+std::size_t BatchEvaluator<T>::multiply_adds() const {
+  // Two for a lane's density; for each channel the polynomial and the sum.
+  return table_.lanes * (2 + table_.channels * (kWeightDegree<T> + 1));
+}
+
+template class BatchEvaluator<float>;
+template class BatchEvaluator<double>;
+
+}  // namespace clothbrdf

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "tabulate/weight_table.h"
+
+namespace clothbrdf {
+
+/// Many pairs of unit vectors of the cloth frame, one array a coordinate, all of one length: wi to
+/// the light, wo to the eye.
+template <class T>
+struct DirectionArrays {
+  std::array<const T*, 3> wi;
+  std::array<const T*, 3> wo;
+  std::size_t count;
+};
+
+/// f_r (1/sr, without the cosine) at many arbitrary pairs of directions, near the machine's limit:
+/// no exponential, power or path sum is left for a pair. In vector registers of any width, chosen
+/// when the program runs.
+///
+/// Error against the model, relative to the sum of a channel's directional and constant parts:
+/// float 5e-6, double 1e-12, times max(1, condition number of the lobe): how much h / axis
+/// magnifies the rounding of the directions themselves. 0 where a direction is on or below the
+/// horizon.
+template <class T>
+class BatchEvaluator {
+ public:
+  /// Prepares tables, some milliseconds. Keeps a reference to the model.
+  BatchEvaluator(const ClothModel<double>& model, std::vector<Channel> channels, Workers workers);
+
+  /// values[channel][pair]. May be called from several threads at once; each pair's value has the
+  /// same bits in any batch.
+  void evaluate(const DirectionArrays<T>& directions, std::span<T* const> values) const;
+
+  /// Multiply-adds of a pair, padding included: what a share of the machine's peak is counted in.
+  std::size_t multiply_adds() const;
+
+  /// False where the weights have no table (weight_table): pairs are then evaluated one by one.
+  bool tabulated() const { return table_.lanes > 0; }
+
+ private:
+  void evaluate_directly(const DirectionArrays<T>& directions, std::span<T* const> values) const;
+
+  LobeLanes lanes_;
+  WeightTable<T> table_;
+  std::vector<T> weft_;  // padded
+  std::vector<T> warp_;
+  std::vector<T> constants_;
+};
+
+}  // namespace clothbrdf

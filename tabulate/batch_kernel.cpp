@@ -1,0 +1,225 @@
+#include "tabulate/batch_kernel.h"
+
+// Compiled once for each kind of vector registers.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "tabulate/batch_kernel.cpp"
+#include <hwy/foreach_target.h>
+// After it.
+#include <hwy/highway.h>
+
+#include <algorithm>
+
+HWY_BEFORE_NAMESPACE();
+namespace clothbrdf {
+namespace HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+constexpr std::size_t kBlock = 64;  // pairs whose intermediate results stay in the nearest cache
+
+template <class T>
+struct Block {
+  HWY_ALIGN T weft2[kBlock];  // the half vector's squared components
+  HWY_ALIGN T warp2[kBlock];
+  HWY_ALIGN T normal2[kBlock];
+  HWY_ALIGN T place[kBlock];   // in the piece, -1 to 1
+  HWY_ALIGN T factor[kBlock];  // directional factor times h_n, 0 below the horizon
+  HWY_ALIGN T above[kBlock];   // 1, or 0 below the horizon
+  HWY_ALIGN hwy::MakeUnsigned<T> piece[kBlock];
+  HWY_ALIGN T sum[3][kBlock];  // over the lanes, of the channels at work
+};
+
+/// What the lanes of kBlock pairs share: lanes over pairs.
+template <class T>
+void Prepare(const BatchPlan<T>& plan, const DirectionArrays<T>& in, Block<T>& block) {
+  const hn::ScalableTag<T> d;
+  const hn::RebindToUnsigned<decltype(d)> du;
+  const std::size_t n = hn::Lanes(d);
+  const auto zero = hn::Zero(d);
+  const auto one = hn::Set(d, T(1));
+  const auto half = hn::Set(d, T(0.5));
+  const auto turn_sin = hn::Set(d, plan.turn_sin);
+  const auto turn_cos = hn::Set(d, plan.turn_cos);
+  constexpr int kMantissa = sizeof(T) == sizeof(float) ? 23 : 52;
+  const int shift = kMantissa - plan.piece_bits;
+  const auto first_piece =
+      hn::ShiftRightSame(hn::BitCast(du, hn::Set(d, static_cast<T>(kWeightShift))), shift);
+  const auto mantissa = hn::Set(du, (hwy::MakeUnsigned<T>{1} << shift) - 1);
+  for (std::size_t p = 0; p < kBlock; p += n) {
+    const auto load = [&](const T* from) { return hn::LoadU(d, from + p); };
+    const auto wi_z = load(in.wi[2]);
+    const auto wo_z = load(in.wo[2]);
+    const auto h_x = hn::Add(load(in.wi[0]), load(in.wo[0]));
+    const auto h_y = hn::Add(load(in.wi[1]), load(in.wo[1]));
+    const auto h_z = hn::Add(wi_z, wo_z);
+    const auto length2 = hn::MulAdd(h_x, h_x, hn::MulAdd(h_y, h_y, hn::Mul(h_z, h_z)));
+    const auto low = hn::Min(wi_z, wo_z);
+    const auto high = hn::Max(wi_z, wo_z);
+    const auto above = hn::And(hn::Gt(low, zero), hn::Gt(length2, zero));
+    const auto length = hn::Sqrt(hn::IfThenElse(above, length2, one));
+    const auto inverse = hn::Div(one, length);
+    const auto x = hn::Min(hn::Mul(half, length), one);
+    const auto weft = hn::Mul(hn::MulAdd(h_x, turn_cos, hn::Mul(h_y, turn_sin)), inverse);
+    const auto warp = hn::Mul(hn::NegMulAdd(h_x, turn_sin, hn::Mul(h_y, turn_cos)), inverse);
+    const auto normal = hn::Mul(h_z, inverse);
+    auto factor = normal;
+    if (plan.microfacet) {
+      // min(1 / (2 low), h_n / x) / (2 high), model.md section 7.
+      const auto unshadowed = hn::Div(half, low);
+      const auto shadowed = hn::Div(normal, x);
+      factor = hn::Mul(factor, hn::Div(hn::Mul(half, hn::Min(unshadowed, shadowed)), high));
+    } else {
+      factor = hn::Div(factor, wi_z);
+    }
+    const auto y = hn::Add(x, hn::Set(d, static_cast<T>(kWeightShift)));
+    const auto bits = hn::BitCast(du, y);
+    // Bits of the place in the piece, as a number from 1 to 2: exponent 0 over them.
+    const auto in_piece = hn::ShiftLeftSame(hn::And(bits, mantissa), plan.piece_bits);
+    const auto from_one = hn::BitCast(d, hn::Or(in_piece, hn::BitCast(du, one)));
+    hn::Store(hn::Mul(weft, weft), d, block.weft2 + p);
+    hn::Store(hn::Mul(warp, warp), d, block.warp2 + p);
+    // Below the horizon nothing may overflow: a factor of 0 takes it away.
+    hn::Store(hn::IfThenElse(above, hn::Mul(normal, normal), one), d, block.normal2 + p);
+    hn::Store(hn::MulAdd(hn::Set(d, T(2)), from_one, hn::Set(d, T(-3))), d, block.place + p);
+    hn::Store(hn::IfThenElseZero(above, factor), d, block.factor + p);
+    hn::Store(hn::IfThenElseZero(above, one), d, block.above + p);
+    hn::Store(hn::Sub(hn::ShiftRightSame(bits, shift), first_piece), du, block.piece + p);
+  }
+}
+
+/// The sums over lanes for `count` pairs and kChannels channels from `channel` on: lanes over
+/// lobes.
+template <std::size_t kChannels, class T>
+void Sum(const BatchPlan<T>& plan, std::size_t channel, std::size_t count, Block<T>& block) {
+  // Of 256 bits at most: adding up the lanes of wider ones costs more than they save.
+  const hn::CappedTag<T, 32 / sizeof(T)> d;
+  const std::size_t n = hn::Lanes(d);
+  constexpr std::size_t kPowers = kWeightDegree<T> + 1;
+  const std::size_t lanes = plan.lanes;
+  const T* const weft = plan.weft;
+  const T* const warp = plan.warp;
+  const std::size_t row_size = plan.channels * kPowers * lanes;
+  const T* const first_row = plan.coefficients + channel * kPowers * lanes;
+  const auto one = hn::Set(d, T(1));
+  for (std::size_t p = 0; p < count; ++p) {
+    const auto weft2 = hn::Set(d, block.weft2[p]);
+    const auto warp2 = hn::Set(d, block.warp2[p]);
+    const auto normal2 = hn::Set(d, block.normal2[p]);
+    const auto place = hn::Set(d, block.place[p]);
+    const T* const row = first_row + static_cast<std::size_t>(block.piece[p]) * row_size;
+    hn::Vec<decltype(d)> sum[kChannels];
+    for (auto& s : sum) s = hn::Zero(d);
+    for (std::size_t lane = 0; lane < lanes; lane += n) {
+      const auto size = hn::MulAdd(hn::Load(d, weft + lane), weft2,
+                                   hn::MulAdd(hn::Load(d, warp + lane), warp2, normal2));
+      const auto density = hn::Div(one, size);
+      for (std::size_t c = 0; c < kChannels; ++c) {
+        const T* const power = row + c * kPowers * lanes + lane;
+        auto weight = hn::Load(d, power + (kPowers - 1) * lanes);
+        for (std::size_t k = kPowers - 1; k-- > 0;) {
+          weight = hn::MulAdd(weight, place, hn::Load(d, power + k * lanes));
+        }
+        sum[c] = hn::MulAdd(weight, density, sum[c]);
+      }
+    }
+    for (std::size_t c = 0; c < kChannels; ++c) {
+      block.sum[c][p] = hn::GetLane(hn::SumOfLanes(d, sum[c]));
+    }
+  }
+}
+
+/// What is left to do for one channel: lanes over pairs.
+template <class T>
+void Finish(const Block<T>& block, const T* sum, T constant, std::size_t count, T* values) {
+  const hn::ScalableTag<T> d;
+  const std::size_t n = hn::Lanes(d);
+  const auto value = [&](std::size_t p) {
+    return hn::MulAdd(hn::Load(d, block.factor + p), hn::Load(d, sum + p),
+                      hn::Mul(hn::Load(d, block.above + p), hn::Set(d, constant)));
+  };
+  std::size_t p = 0;
+  for (; p + n <= count; p += n) hn::StoreU(value(p), d, values + p);
+  if (p == count) return;
+  HWY_ALIGN T rest[HWY_MAX_BYTES / sizeof(T)];
+  hn::Store(value(p), d, rest);
+  std::copy_n(rest, count - p, values + p);
+}
+
+/// The pairs from `first` on, kBlock of them; after the last one directions on the horizon.
+template <class T>
+class Window {
+ public:
+  DirectionArrays<T> at(const DirectionArrays<T>& in, std::size_t first) {
+    DirectionArrays<T> block{{}, {}, std::min(kBlock, in.count - first)};
+    for (std::size_t k = 0; k < 3; ++k) {
+      block.wi[k] = array(in.wi[k] + first, block.count, rest_[k]);
+      block.wo[k] = array(in.wo[k] + first, block.count, rest_[3 + k]);
+    }
+    return block;
+  }
+
+ private:
+  const T* array(const T* from, std::size_t count, T* rest) {
+    if (count == kBlock) return from;
+    std::fill_n(std::copy_n(from, count, rest), kBlock - count, T(0));
+    return rest;
+  }
+
+  T rest_[6][kBlock];
+};
+
+template <class T>
+void Run(const BatchPlan<T>& plan, const DirectionArrays<T>& in, T* const* values) {
+  Block<T> block{};
+  Window<T> window;
+  for (std::size_t first = 0; first < in.count; first += kBlock) {
+    const DirectionArrays<T> now = window.at(in, first);
+    Prepare(plan, now, block);
+    std::size_t channel = 0;
+    while (channel < plan.channels) {
+      const bool three = channel + 3 <= plan.channels;
+      if (three) {
+        Sum<3>(plan, channel, now.count, block);
+      } else {
+        Sum<1>(plan, channel, now.count, block);
+      }
+      for (std::size_t c = 0; c < (three ? 3U : 1U); ++c, ++channel) {
+        Finish(block, block.sum[c], plan.constants[channel], now.count, values[channel] + first);
+      }
+    }
+  }
+}
+
+void RunFloat(const BatchPlan<float>& plan, const DirectionArrays<float>& in,
+              float* const* values) {
+  Run(plan, in, values);
+}
+void RunDouble(const BatchPlan<double>& plan, const DirectionArrays<double>& in,
+               double* const* values) {
+  Run(plan, in, values);
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace clothbrdf
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace clothbrdf {
+
+HWY_EXPORT(RunFloat);
+HWY_EXPORT(RunDouble);
+
+void run_batch(const BatchPlan<float>& plan, const DirectionArrays<float>& directions,
+               float* const* values) {
+  HWY_DYNAMIC_DISPATCH(RunFloat)(plan, directions, values);
+}
+
+void run_batch(const BatchPlan<double>& plan, const DirectionArrays<double>& directions,
+               double* const* values) {
+  HWY_DYNAMIC_DISPATCH(RunDouble)(plan, directions, values);
+}
+
+}  // namespace clothbrdf
+#endif

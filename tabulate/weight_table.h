@@ -1,0 +1,44 @@
+#pragma once
+
+#include <hwy/aligned_allocator.h>
+
+#include <cstddef>
+#include <cstdint>
+
+#include "support/progress.h"
+#include "tabulate/lobe_lanes.h"
+
+namespace clothbrdf {
+
+/// The weights of LobeLanes as piecewise polynomials of cos_theta_d. Pieces are equal parts of the
+/// octaves of y = cos_theta_d + kWeightShift, so that a piece and the place in it are bits of y:
+/// weights change fastest at grazing incidence (model.md 8.2).
+template <class T>
+struct WeightTable {
+  std::size_t lanes = 0;  ///< padded with weights of 0 to a multiple of kLanePadding
+  std::size_t channels = 0;
+  int piece_bits = 0;                           ///< 2^piece_bits pieces an octave
+  hwy::AlignedFreeUniquePtr<T[]> coefficients;  ///< [piece][channel][power][lane]
+
+  std::size_t row_size() const;  ///< values of a piece
+};
+
+/// y = cos_theta_d + 2^kFirstOctave lies in the octaves that start at 2^kFirstOctave ... 2^0.
+inline constexpr int kFirstOctave = -8;
+inline constexpr double kWeightShift = 0x1p-8;
+
+/// Lanes of a vector register of 512 bits: narrower ones take several steps.
+template <class T>
+inline constexpr std::size_t kLanePadding = 64 / sizeof(T);
+
+/// Degree of the polynomials.
+template <class T>
+inline constexpr int kWeightDegree = sizeof(T) == sizeof(float) ? 3 : 9;
+
+/// With `error` the largest difference of f that interpolation makes, relative, over all pieces and
+/// half vectors of every tilt. Empty (no lanes) where no such table reaches the tolerance: where
+/// weights jump at grazing incidence, as with a refractive index near 1.
+template <class T>
+WeightTable<T> weight_table(const LobeLanes& lanes, double tolerance, Workers workers);
+
+}  // namespace clothbrdf
