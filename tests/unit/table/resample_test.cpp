@@ -212,4 +212,17 @@ TEST_CASE("any number of threads resamples to the same bits") {
   }
 }
 
+TEST_CASE("resampling counts the cells of each pass, all of them") {
+  const Table table = lambertian(halfdiff4d(5, 4, 5, 6), 0.5);
+  Progress progress;
+  resample(table, halfdiff3d(6, 6, 6), {2, &progress});
+  CHECK(progress.snapshot().what == "resampling");
+  CHECK(progress.snapshot().done == 216);
+  CHECK(progress.snapshot().total == 216);
+  // The mean over rotations is all there is to do.
+  resample(table, halfdiff3d(5, 5, 6), {2, &progress});
+  CHECK(progress.snapshot().done == 150);
+  CHECK(progress.snapshot().total == 150);
+}
+
 }  // namespace clothbrdf::test
