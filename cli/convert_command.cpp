@@ -159,9 +159,7 @@ void convert(const ConvertOptions& options) {
   if (holds_components(table.spec()) && !target.components) table = without_components(table);
   std::optional<ChannelDifference> error;
   if (target.grid != table.spec().grid()) {
-    bar.progress().begin("resampling", target.grid.cell_count(), "cells");
     Table resampled = resample(table, target.grid, workers);
-    bar.progress().begin("measuring the error", table.spec().cell_count(), "cells");
     error = worst_of(compare(table, resampled, workers));
     table = std::move(resampled);
   }
