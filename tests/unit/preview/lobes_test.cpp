@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iostream>
 #include <numbers>
+#include <vector>
 
 #include "formats/material_json.h"
 #include "model/reflectance.h"
@@ -151,6 +152,26 @@ TEST_CASE("specular light leans away from the light, which comes from the left")
       previous = found.x;
     }
   }
+}
+
+TEST_CASE("diffuse, internal and specular light lie one on the other from the centre outward") {
+  Material material = white();
+  material.weights = {3, 3, 0.3};
+  material.warp.absorption = material.weft.absorption = {2, 0, 2};
+  constexpr int kLarge = 3 * kSize;
+  const Image image = render_lobes(*material_cloth(material, "green"), {0, 0, kLarge});
+  // Straight up from the centre; a blend of two colours at each outline.
+  std::vector<Rgb> colours;
+  for (int row = kLarge * 49 / 100 - 2; row > 0; --row) {
+    const Rgb& colour = image.at(kLarge / 2, row);
+    const bool known = !colours.empty() && same(colours.back(), colour);
+    if (!known && same(colour, image.at(kLarge / 2, row + 1))) colours.push_back(colour);
+  }
+  REQUIRE(colours.size() >= 3);
+  CHECK(same(colours[0], {0.35 * std::exp(-2), 0.35, 0.35 * std::exp(-2)}));
+  CHECK_THAT(colours[1][1], Catch::Matchers::WithinAbs(0.8, 1e-12));
+  CHECK(colours[1][0] < 0.2);
+  CHECK(same(colours[2], {0.85, 0.85, 0.85}));
 }
 
 TEST_CASE("a line shows where the light comes from") {
