@@ -1,5 +1,6 @@
 #pragma once
 
+#include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfInputFile.h>
@@ -48,6 +49,9 @@ inline Image read_exr_picture(const std::filesystem::path& path) {
   Imf::FrameBuffer frame;
   const char* const names[] = {"R", "G", "B"};
   for (std::size_t c = 0; c < 3; ++c) {
+    if (in.header().channels().findChannel(names[c]) == nullptr) {
+      throw std::runtime_error(path.string() + ": no channel " + names[c]);
+    }
     frame.insert(names[c], Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(samples.data() + c),
                                       3 * sizeof(float), row_bytes));
   }

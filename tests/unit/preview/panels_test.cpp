@@ -1,6 +1,7 @@
 #include "preview/panels.h"
 
-#include <limits>
+#include <string>
+#include <vector>
 
 #include "tests/catch.h"
 
@@ -111,8 +112,7 @@ TEST_CASE("small letters look like capitals, and every other letter has a look o
 
 TEST_CASE("characters without a picture of their own are filled boxes") {
   const std::string known = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789.,-_/: ";
-  for (int code = std::numeric_limits<char>::min(); code <= std::numeric_limits<char>::max();
-       ++code) {
+  for (int code = 0; code < 256; ++code) {
     const auto letter = static_cast<char>(code);
     if (known.find(letter) != std::string::npos) continue;
     CAPTURE(code);
