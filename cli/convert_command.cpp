@@ -92,6 +92,7 @@ std::vector<std::string> what_is_lost(const Table& source, const Target& target)
   if (spec.grid() != target.grid) {
     lost.push_back("the nodes: resampled from " + spec.grid().description() + " to " +
                    target.grid.description() + ", linear between nodes");
+    if (spec.cells.average) lost.emplace_back("the averages over cells: values at nodes");
   }
   if (holds_components(spec) && !target.components) {
     lost.emplace_back("the components: totals only");
