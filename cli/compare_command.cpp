@@ -8,6 +8,7 @@
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "cli/progress_bar.h"
+#include "support/errors.h"
 #include "support/threads.h"
 #include "table/compare.h"
 
@@ -66,7 +67,13 @@ void compare_tables(const CompareOptions& options) {
   const Table b = read_table(options.b);
   ProgressBar bar;
   bar.progress().begin("comparing", a.spec().cell_count(), "cells");
-  const Comparison comparison = compare(a, b, {threads, &bar.progress()});
+  const Comparison comparison = [&] {
+    try {
+      return compare(a, b, {threads, &bar.progress()});
+    } catch (const InputError& error) {
+      throw InputError(options.b + " against " + options.a + ": " + error.what());
+    }
+  }();
   bar.clear();
   if (options.json) {
     print_json(options, a, comparison);

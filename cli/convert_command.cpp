@@ -92,6 +92,7 @@ std::vector<std::string> what_is_lost(const Table& source, const Target& target)
   if (spec.grid() != target.grid) {
     lost.push_back("the nodes: resampled from " + spec.grid().description() + " to " +
                    target.grid.description() + ", linear between nodes");
+    if (spec.cells.average) lost.emplace_back("the averages over cells: values at nodes");
   }
   if (holds_components(spec) && !target.components) {
     lost.emplace_back("the components: totals only");
@@ -159,9 +160,7 @@ void convert(const ConvertOptions& options) {
   if (holds_components(table.spec()) && !target.components) table = without_components(table);
   std::optional<ChannelDifference> error;
   if (target.grid != table.spec().grid()) {
-    bar.progress().begin("resampling", target.grid.cell_count(), "cells");
     Table resampled = resample(table, target.grid, workers);
-    bar.progress().begin("measuring the error", table.spec().cell_count(), "cells");
     error = worst_of(compare(table, resampled, workers));
     table = std::move(resampled);
   }

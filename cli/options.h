@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 
 #include "formats/format.h"
@@ -35,6 +36,9 @@ SheetDirection parse_direction(const std::string& option, const std::string& tex
 
 /// The endings of the tables that are read and written, for people.
 std::string table_endings();
+
+/// Whether two names stand for one file, there or not.
+bool same_file(const std::filesystem::path& a, const std::filesystem::path& b);
 
 /// "1,458,000", for people.
 std::string with_commas(std::uint64_t number);

@@ -1,5 +1,4 @@
-#include <charconv>
-#include <cmath>
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -128,6 +127,20 @@ void report(const PreviewOptions& options, const std::string& file, const Image&
   }
 }
 
+// A table's ending is a picture's, too: an output must not take the place of an input.
+void check_outputs(const PreviewOptions& options) {
+  for (auto at = options.outputs.begin(); at != options.outputs.end(); ++at) {
+    check_picture_name(*at);
+    const auto is_it = [&](const std::string& other) { return same_file(*at, other); };
+    if (std::any_of(options.outputs.begin(), at, is_it)) {
+      throw InputError("--output: " + *at + " is given twice");
+    }
+    if (std::any_of(options.files.begin(), options.files.end(), is_it)) {
+      throw InputError("--output: " + *at + " is also read; a picture needs another name");
+    }
+  }
+}
+
 void preview(const PreviewOptions& options) {
   const Show& show = parse_show(options.show);
   SheetView sheet;
@@ -138,7 +151,7 @@ void preview(const PreviewOptions& options) {
   constexpr double kLobesTheta = 30;
   const double light_theta = options.light ? sheet.light.theta_deg : kLobesTheta;
   const int threads = options.threads ? parse_threads(*options.threads) : default_threads();
-  for (const std::string& name : options.outputs) check_picture_name(name);
+  check_outputs(options);
   std::vector<Source> sources;
   for (const std::string& file : options.files) {
     sources.push_back(read_source(file));
@@ -161,10 +174,9 @@ void preview(const PreviewOptions& options) {
     }
   }
   const Image picture = arrange(rows);
-  for (AtomicFile& file : files) {
-    write_picture(picture, file);
-    file.commit();
-  }
+  for (AtomicFile& file : files) write_picture(picture, file);
+  workers.check();
+  for (AtomicFile& file : files) file.commit();
   bar.clear();
   for (const AtomicFile& file : files) report(options, file.name().string(), picture, panels);
 }

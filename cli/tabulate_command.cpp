@@ -71,12 +71,6 @@ Output plan_output(const TabulateOptions& options, const Material& material,
   return {name, &format, std::move(spec), what_is_lost(material, grid)};
 }
 
-bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
-  std::error_code ignored;
-  return a == b || std::filesystem::weakly_canonical(a, ignored) ==
-                       std::filesystem::weakly_canonical(b, ignored);
-}
-
 void report(const TabulateOptions& options, const Output& output, std::uint64_t bytes,
             double seconds) {
   const Grid& grid = output.spec.grid();

@@ -8,6 +8,7 @@
 #include <png.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -19,7 +20,15 @@
 namespace clothbrdf {
 namespace {
 
-bool is_png(const std::filesystem::path& path) { return path.extension() == ".png"; }
+// In small letters: A.PNG is a picture, too, as A.EXR is a table.
+std::string ending(const std::filesystem::path& path) {
+  std::string text = path.extension().string();
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+bool is_png(const std::filesystem::path& path) { return ending(path) == ".png"; }
 
 void write_png(const Image& image, AtomicFile& file) {
   std::vector<png_byte> bytes;
@@ -73,7 +82,7 @@ void write_exr_picture(const Image& image, AtomicFile& file) {
 }  // namespace
 
 void check_picture_name(const std::filesystem::path& path) {
-  if (is_png(path) || path.extension() == ".exr") return;
+  if (is_png(path) || ending(path) == ".exr") return;
   throw InputError(path.string() + ": the ending '" + path.extension().string() +
                    "' is not that of a picture; known: .png (sRGB), .exr (linear)");
 }

@@ -7,7 +7,8 @@
 
 namespace clothbrdf {
 
-/// Throws InputError where a file's ending is not that of a picture: .png or .exr.
+/// Throws InputError where a file's ending is not that of a picture: .png or .exr, in letters of
+/// any case.
 void check_picture_name(const std::filesystem::path& path);
 
 /// Writes all of a picture, by the file's ending; the caller commits. .png: 8 bits, sRGB, values

@@ -82,7 +82,12 @@ class TableCloth final : public Cloth {
 }  // namespace
 
 std::unique_ptr<Cloth> material_cloth(const Material& material, const std::string& name) {
-  if (!material.wavelengths_nm.empty() || material.channel_count() != 3) {
+  if (!material.wavelengths_nm.empty()) {
+    throw InputError(name + ": wavelengths_nm has " +
+                     std::to_string(material.wavelengths_nm.size()) +
+                     " values; a picture needs absorption of R, G and B, without wavelengths_nm");
+  }
+  if (material.channel_count() != 3) {
     throw InputError(name + ": absorption has " + std::to_string(material.channel_count()) +
                      " values; a picture needs R, G and B");
   }
@@ -90,6 +95,9 @@ std::unique_ptr<Cloth> material_cloth(const Material& material, const std::strin
 }
 
 std::unique_ptr<Cloth> table_cloth(Table table, const std::string& name) {
+  if (!table.spec().has_grid()) {
+    throw InputError(name + ": is a list of pairs; a picture needs a grid");
+  }
   auto cloth = std::make_unique<TableCloth>(std::move(table));
   if (!cloth->has(Part::kTotal)) {
     throw InputError(name + ": has no channels R, G and B; a picture needs them");

@@ -92,8 +92,10 @@ void draw_text(Image& image, int x, int y, int scale, const std::string& text, c
       for (int dot_x = 0; dot_x < kGlyphWidth * scale; ++dot_x) {
         const unsigned row = glyph.rows[static_cast<std::size_t>(dot_y / scale)];
         const bool ink = (row >> (kGlyphWidth - 1 - dot_x / scale) & 1U) != 0;
-        const bool inside = x + dot_x < image.width && y + dot_y < image.height;
-        if (ink && inside) image.at(x + dot_x, y + dot_y) = colour;
+        const int at_x = x + dot_x;
+        const int at_y = y + dot_y;
+        const bool inside = at_x >= 0 && at_y >= 0 && at_x < image.width && at_y < image.height;
+        if (ink && inside) image.at(at_x, at_y) = colour;
       }
     }
     x += (kGlyphWidth + 1) * scale;

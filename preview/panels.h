@@ -16,7 +16,8 @@ struct Panel {
 /// Panels of one size, row by row, on a dark ground.
 Image arrange(const std::vector<std::vector<Panel>>& rows);
 
-/// Writes a line of text, top left corner at x, y; letters of 5 x 7 dots, `scale` pixels each.
+/// Writes a line of text, top left corner at x, y; letters of 5 x 7 dots, `scale` pixels each. What
+/// lies outside is cut off.
 void draw_text(Image& image, int x, int y, int scale, const std::string& text, const Rgb& colour);
 
 }  // namespace clothbrdf

@@ -16,7 +16,7 @@ constexpr double kTurn = 2 * std::numbers::pi;
 
 // z = 0.045 sin(p) + 0.024 sin(q) with
 // p = 2 pi (1.7 x - y + 0.16 sin(2 pi (0.35 x + 0.75 y))), q = 2 pi (0.8 x + 1.3 y + 0.2):
-// diagonal wrinkles that wander, and shallower ones across them. Slopes reach 0.85 (40 degrees).
+// diagonal wrinkles that wander, and shallower ones across them. Slopes reach 0.735 (36 degrees).
 Slope sheet_slope(double x, double y) {
   const double bend = kTurn * (0.35 * x + 0.75 * y);
   const double p = kTurn * (1.7 * x - y + 0.16 * std::sin(bend));

@@ -25,14 +25,15 @@ struct Step {
   double width;
 };
 
-// Two steps for each cell of the axis, as dense as its cells are.
-std::vector<Step> half_cells(const Axis& axis) {
+// Two steps or more for each cell of the axis, as dense as its cells are.
+std::vector<Step> steps_in_cells(const Axis& axis) {
+  constexpr int kFewest = 48;  // a coarse grid's horizon is no coarser
+  const int each = std::max(2, (kFewest + axis.size - 1) / axis.size);
   std::vector<Step> steps;
   for (int k = 0; k < axis.size; ++k) {
     const double low = axis.edge_deg(k);
-    const double width = (axis.edge_deg(k + 1) - low) / 2;
-    steps.push_back({low + width / 2, width});
-    steps.push_back({low + width * 1.5, width});
+    const double width = (axis.edge_deg(k + 1) - low) / each;
+    for (int step = 0; step < each; ++step) steps.push_back({low + width * (step + 0.5), width});
   }
   return steps;
 }
@@ -43,27 +44,25 @@ std::vector<Step> even_steps(double range, int count) {
   return steps;
 }
 
-void add(const Table& table, const Directions& d, double weight, std::span<double> sample,
-         std::span<double> sum) {
-  if (!table.interpolate(d, sample)) return;
-  for (std::size_t c = 0; c < sum.size(); ++c) sum[c] += weight * sample[c];
-}
-
-// The table with f_r cos(theta_i) cos(theta_o) at each node.
+// The table with f_r cos(theta_i) cos(theta_o) at each node, and that product of cosines as one
+// more channel. The quotient of both, interpolated, is the mean of f_r around with nodes near the
+// horizon counting little: f_r may grow without bounds there, and an even f_r stays as it is.
 Table with_cosines(const Table& table) {
-  const TableSpec& spec = table.spec();
+  TableSpec spec = table.spec();
+  const std::size_t channels = spec.channels.size();
   const std::size_t columns = spec.column_count();
-  std::vector<double> values(table.values().begin(), table.values().end());
+  spec.channels.push_back({"cosines", Part::kTotal, 0});
+  std::vector<double> values(spec.cell_count() * spec.channels.size());
   std::vector<std::uint8_t> valid(spec.cell_count());
   for (std::size_t cell = 0; cell < valid.size(); ++cell) {
     const Directions node = spec.grid().directions(cell);
     valid[cell] = table.valid(cell) && node.above_horizon();
+    const double cosines = node.wi[2] * node.wo[2];
     double* const first = values.data() + cell / columns * spec.row_values() + cell % columns;
-    for (std::size_t c = 0; c < spec.channels.size(); ++c) {
-      first[c * columns] *= node.wi[2] * node.wo[2];
-    }
+    for (std::size_t c = 0; c < channels; ++c) first[c * columns] = cosines * table.value(cell, c);
+    first[channels * columns] = cosines;
   }
-  return {spec, std::move(values), std::move(valid), table.precision()};
+  return {std::move(spec), std::move(values), std::move(valid), table.precision()};
 }
 
 // Of a table with cosines; d wo = 4 cos(theta_d) d wh.
@@ -71,13 +70,16 @@ void integrate_half_vectors(const Table& table, const Vector3<double>& wi,
                             std::span<double> albedo) {
   const Grid& grid = table.spec().grid();
   constexpr int kIsotropicAzimuths = 120;
-  const int azimuths =
-      grid.kind == GridKind::kHalfDifference4d
-          ? static_cast<int>(2 * grid.axes[1].size * std::lround(360 / grid.axes[1].highest_deg))
-          : kIsotropicAzimuths;
+  constexpr int kFewestAzimuths = 72;
+  int azimuths = kIsotropicAzimuths;
+  if (grid.kind == GridKind::kHalfDifference4d) {
+    const Axis& phi_h = grid.axes[1];
+    azimuths = std::max(kFewestAzimuths,
+                        2 * phi_h.size * static_cast<int>(std::lround(360 / phi_h.highest_deg)));
+  }
   const std::vector<Step> phis = even_steps(360, azimuths);
-  std::vector<double> sample(albedo.size());
-  for (const Step& theta : half_cells(grid.axes[0])) {
+  std::vector<double> sample(albedo.size() + 1);
+  for (const Step& theta : steps_in_cells(grid.axes[0])) {
     const double area = sincosd(theta.angle).sin * theta.width * phis[0].width * kRadian * kRadian;
     for (const Step& phi : phis) {
       const Vector3<double> wh = direction(theta.angle, phi.angle);
@@ -85,7 +87,9 @@ void integrate_half_vectors(const Table& table, const Vector3<double>& wi,
       if (x <= 0) continue;
       const Vector3<double> wo = {2 * x * wh[0] - wi[0], 2 * x * wh[1] - wi[1],
                                   2 * x * wh[2] - wi[2]};
-      add(table, {wi, wo}, 4 * x * area / wi[2], sample, albedo);
+      if (!table.interpolate({wi, wo}, sample)) continue;
+      const double weight = 4 * x * area * wo[2] / sample.back();
+      for (std::size_t c = 0; c < albedo.size(); ++c) albedo[c] += weight * sample[c];
     }
   }
 }
@@ -104,7 +108,8 @@ void integrate_outgoing(const Table& table, const Vector3<double>& wi, std::span
     const double area = sincosd(theta.angle).sin * theta.width * phis[0].width * kRadian * kRadian;
     for (const Step& phi : phis) {
       const Vector3<double> wo = direction(theta.angle, phi.angle);
-      add(table, {wi, wo}, wo[2] * area, sample, albedo);
+      if (!table.interpolate({wi, wo}, sample)) continue;
+      for (std::size_t c = 0; c < albedo.size(); ++c) albedo[c] += wo[2] * area * sample[c];
     }
   }
 }
@@ -126,8 +131,8 @@ std::vector<double> incident_thetas(const Grid& grid) {
 std::vector<Albedo> albedo_by_theta(const Table& table, const Workers& workers) {
   const Grid& grid = table.spec().grid();
   const bool over_wo = grid.kind == GridKind::kInOut;
-  std::optional<Table> bounded;
-  if (!over_wo) bounded = with_cosines(table);
+  std::optional<Table> weighted;
+  if (!over_wo) weighted = with_cosines(table);
   const std::vector<double> thetas = incident_thetas(grid);
   const int azimuths = grid.kind == GridKind::kHalfDifference3d ? 1 : kAzimuths;
   if (workers.progress != nullptr) {
@@ -146,7 +151,7 @@ std::vector<Albedo> albedo_by_theta(const Table& table, const Workers& workers) 
       if (over_wo) {
         integrate_outgoing(table, wi, channels);
       } else {
-        integrate_half_vectors(*bounded, wi, channels);
+        integrate_half_vectors(*weighted, wi, channels);
       }
       const auto largest = std::max_element(channels.begin(), channels.end());
       albedo.channel = static_cast<std::size_t>(largest - channels.begin());

@@ -24,9 +24,10 @@ inline constexpr double kHighestTheta = 85;
 /// channels and 16 azimuths of the light (one, where the table knows none). In/out tables go to
 /// their last node, half/difference tables to the last cell of theta_d.
 ///
-/// Half/difference tables are integrated over half vectors, in steps half as wide as their cells;
-/// what is interpolated is f_r cos(theta_i) cos(theta_o), which stays bounded near the horizon.
-/// In/out tables are integrated over wo, in steps of at most 2 degrees, with f_r interpolated.
+/// Half/difference tables are integrated over half vectors, in steps at most half as wide as their
+/// cells; f_r between nodes is their mean weighted by cos(theta_i) cos(theta_o), too: it may grow
+/// without bounds towards the horizon. In/out tables are integrated over wo, in steps of at most 2
+/// degrees, with f_r interpolated.
 std::vector<Albedo> albedo_by_theta(const Table& table, const Workers& workers);
 
 }  // namespace clothbrdf

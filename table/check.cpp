@@ -82,15 +82,16 @@ void check_values(const Table& table, TableCheck& check) {
   const TableSpec& spec = table.spec();
   for (std::size_t cell = 0; cell < spec.cell_count(); ++cell) {
     const bool below = !spec.grid().any_above_horizon(cell);
+    const bool above = spec.grid().node_above_horizon(cell);
     check.below_horizon += below;
-    check.masked += !below && !table.valid(cell) && spec.grid().node_above_horizon(cell);
+    check.masked += above && !table.valid(cell);
     for (std::size_t c = 0; c < spec.channels.size(); ++c) {
       const TableValue found{cell, c, table.value(cell, c)};
       if (!std::isfinite(found.value)) {
         count(check.not_finite, found, false);
       } else if (below) {
         if (found.value > 0) count(check.below_not_zero, found, false);
-      } else if (found.value < 0) {
+      } else if (found.value < 0 && (spec.cells.average || above)) {
         count(check.negative, found, found.value < check.negative.worst.value);
       }
     }

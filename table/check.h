@@ -45,7 +45,7 @@ struct TableCheck {
   ReciprocityCheck reciprocity;
   std::vector<Albedo> albedo;  ///< by theta_i
 
-  /// The largest up to kHighestTheta; none for a table without valid cells.
+  /// The largest up to kHighestTheta; none where `albedo` has none.
   std::optional<Albedo> largest_albedo() const;
   bool reciprocity_broken() const;
 };

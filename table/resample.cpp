@@ -44,8 +44,8 @@ class Mean {
 // Values of a cell; false where it has none.
 using CellFunction = std::function<bool(std::size_t cell, std::vector<double>& values)>;
 
-// A table like `source` but for its grid and values.
-Table tabulated(const Table& source, const Grid& grid, const Workers& workers,
+// A table like `source` but for its grid and values; a phase of the progress.
+Table tabulated(const Table& source, const Grid& grid, const Workers& workers, const char* what,
                 const std::function<CellFunction()>& make_function) {
   TableSpec spec = source.spec();
   spec.samples = grid;
@@ -53,6 +53,7 @@ Table tabulated(const Table& source, const Grid& grid, const Workers& workers,
   const std::size_t columns = spec.column_count();
   std::vector<double> values(spec.cell_count() * spec.channels.size());
   std::vector<std::uint8_t> valid(spec.cell_count());
+  if (workers.progress != nullptr) workers.progress->begin(what, spec.cell_count(), "cells");
   with_threads(workers.threads, [&] {
     tbb::parallel_for(std::size_t{0}, spec.row_count(), [&](std::size_t row) {
       const CellFunction function = make_function();
@@ -83,7 +84,7 @@ Table isotropic_mean(const Table& source, const Workers& workers) {
     to.axes.erase(to.axes.begin() + 1);
   }
   const std::size_t channels = source.spec().channels.size();
-  return tabulated(source, to, workers, [&]() -> CellFunction {
+  return tabulated(source, to, workers, "mean over rotations", [&]() -> CellFunction {
     return [&, mean = Mean(channels), sample = std::vector<double>(channels)](
                std::size_t cell, std::vector<double>& values) mutable {
       const Directions d = to.directions(cell);
@@ -116,7 +117,7 @@ Table resample(const Table& source, const Grid& grid, const Workers& workers) {
   if (table.spec().grid() == grid) return table;
   const bool both_orders = averages_orders(from, grid);
   const std::size_t channels = source.spec().channels.size();
-  return tabulated(source, grid, workers, [&]() -> CellFunction {
+  return tabulated(source, grid, workers, "resampling", [&]() -> CellFunction {
     return [&, both = Mean(channels), sample = std::vector<double>(channels)](
                std::size_t cell, std::vector<double>& values) mutable {
       const auto add = [&](const Vector3<double>& wi, const Vector3<double>& wo) {

@@ -13,6 +13,8 @@ namespace clothbrdf {
 ///   azimuths.
 /// - A target whose phi_d ends at 180 degrees holds the mean of f(wi, wo) and f(wo, wi), where the
 ///   source tells them apart.
+///
+/// Begins a phase of the workers' progress for each pass over a grid.
 Table resample(const Table& source, const Grid& grid, const Workers& workers);
 
 /// Whether the target is the mean over rotations of an anisotropic source.

@@ -11,6 +11,8 @@ namespace {
 
 // The product of four pairs of shares adds up to 1 to within some epsilons.
 constexpr double kWeightRounding = 1e-14;
+// The angles of a node come back to this part of a cell: less is no share in a neighbour.
+constexpr double kAngleRounding = 1e-9;
 
 }  // namespace
 
@@ -81,7 +83,10 @@ bool Table::interpolate(const Directions& directions, std::span<double> values) 
     for (std::size_t c = 0; c < values.size(); ++c) values[c] += weight * value(cell, c);
     total += weight;
   }
-  if (total == 0) return false;
+  if (total <= kAngleRounding) {
+    std::fill(values.begin(), values.end(), 0.0);
+    return false;
+  }
   // Weights that should add up to 1 may miss it by a rounding, which would be seen at the nodes.
   if (std::abs(total - 1) > kWeightRounding) {
     for (double& v : values) v /= total;

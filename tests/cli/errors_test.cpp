@@ -52,8 +52,12 @@ TEST_CASE("the program tells its version and its help, with an example for each 
 
 TEST_CASE("a command line that cannot be understood is told by the word that is wrong") {
   check_refused({
-      {{}, {"a command is required: new, eval, tabulate, info, preview, check, compare, convert", "clothbrdf --help"}},
-      {{"frobnicate"}, {"'frobnicate' is not a command", "new, eval, tabulate, info, preview, check, compare, convert"}},
+      {{},
+       {"a command is required: new, eval, tabulate, info, preview, check, compare, convert",
+        "clothbrdf --help"}},
+      {{"frobnicate"},
+       {"'frobnicate' is not a command",
+        "new, eval, tabulate, info, preview, check, compare, convert"}},
       {{"frobnicate", kSilk, "-o", "x.exr"}, {"'frobnicate' is not a command"}},
       {{"--frob"}, {"'--frob' is not an option"}},
       {{"eval"}, {"MATERIAL is required", "clothbrdf eval --help"}},

@@ -58,4 +58,23 @@ TEST_CASE("a periodic axis takes any angle, another one only its own range") {
   CHECK(kAxes[1].cell_of(-0.001) == std::nullopt);
 }
 
+TEST_CASE("a coordinate is the index at the nodes, and half of one between uniform ones") {
+  for (const Axis& axis : kAxes) {
+    for (int k = 0; k < axis.size; ++k) {
+      INFO(axis.name << " cell " << k);
+      // A few roundings of an index of at most 180.
+      CHECK_THAT(axis.coordinate(axis.node_deg(k)), Catch::Matchers::WithinAbs(k, 1e-12));
+      if (axis.spacing == Spacing::kSquared || k + 1 == axis.size) continue;
+      const double between = (axis.node_deg(k) + axis.node_deg(k + 1)) / 2;
+      CHECK_THAT(axis.coordinate(between), Catch::Matchers::WithinAbs(k + 0.5, 1e-12));
+    }
+  }
+  // Between squared nodes it is the square root that runs evenly; it goes on beyond the ends.
+  CHECK_THAT(kAxes[0].coordinate(1.0 / 90), Catch::Matchers::WithinAbs(0.5, 1e-12));
+  CHECK(kAxes[0].coordinate(0) == -0.5);
+  CHECK(kAxes[1].coordinate(90) == 44.5);
+  CHECK(kAxes[2].coordinate(185) == 36.5);
+  CHECK(kAxes[4].coordinate(90) == 6);
+}
+
 }  // namespace clothbrdf::test

@@ -1,6 +1,8 @@
 #include "table/grid.h"
 
 #include <cmath>
+#include <optional>
+#include <vector>
 
 #include "support/errors.h"
 #include "tests/catch.h"
@@ -104,6 +106,70 @@ TEST_CASE("halves of the sky that a grid leaves out are there by symmetry") {
     CHECK(grid.cell_of({-d.wi[0], -d.wi[1], d.wi[2]}, {-d.wo[0], -d.wo[1], d.wo[2]}) == cell);
     CHECK(grid.cell_of(d.wo, d.wi) == cell);
   }
+}
+
+TEST_CASE("the cells of a grid cover all pairs of directions, by their measure") {
+  const double pi = std::acos(-1.0);
+  const auto sum = [](const Grid& grid) {
+    double total = 0;
+    for (std::size_t cell = 0; cell < grid.cell_count(); ++cell) total += grid.measure(cell);
+    return total;
+  };
+  // The integral of 4 cos theta_d over half vectors and over difference directions around them.
+  const auto halfdiff_total = [&](double phi_h, double phi_d) { return 2 * phi_h * phi_d; };
+  // Nodes at 90 k / n: the last cell ends half a step before the horizon.
+  const auto cap = [&](int nodes) { return 2 * pi * (1 - std::cos((1 - 0.5 / nodes) * pi / 2)); };
+  constexpr double kRounding = 1e-12;  // of sums of thousands of terms
+  const auto near = [&](double total) { return Catch::Matchers::WithinRel(total, kRounding); };
+  CHECK_THAT(sum(halfdiff3d(9, 8, 7, 360)), near(halfdiff_total(2 * pi, 2 * pi)));
+  CHECK_THAT(sum(halfdiff3d(9, 8, 7)), near(halfdiff_total(2 * pi, pi)));
+  CHECK_THAT(sum(halfdiff4d(9, 5, 8, 7, 360)), near(halfdiff_total(pi, 2 * pi)));
+  CHECK_THAT(sum(halfdiff4d(9, 5, 8, 7)), near(halfdiff_total(pi, pi)));
+  CHECK_THAT(sum(inout(6, 9, 5, 4)), near(cap(6) * cap(5)));
+}
+
+TEST_CASE("a cell measures as many pairs as fall into it") {
+  // Even draws of both directions over the upper hemisphere.
+  const std::uint64_t seed = seed_from_environment();
+  INFO("CLOTHBRDF_SEED=" << seed);
+  RandomInputs random(seed);
+  constexpr int kDraws = 100000;
+  for (const Grid& grid : {halfdiff3d(4, 3, 2), halfdiff4d(3, 2, 3, 2), inout(2, 3, 3, 2)}) {
+    std::vector<int> hits(grid.cell_count());
+    for (int n = 0; n < kDraws; ++n) {
+      const auto draw = [&] {
+        return direction(degrees(std::acos(random.unit())), 360 * random.unit());
+      };
+      const Vector3<double> wi = draw();
+      const Vector3<double> wo = draw();
+      if (const std::optional<std::size_t> cell = grid.cell_of(wi, wo)) ++hits[*cell];
+    }
+    // phi_h and phi_d that end at 180 degrees stand for their other half, too.
+    double folds = 1;
+    for (const Axis& axis : grid.axes) folds *= axis.periodic ? 360 / axis.highest_deg : 1;
+    int compared = 0;
+    for (std::size_t cell = 0; cell < hits.size(); ++cell) {
+      const std::array<int, 4> k = grid.indices(cell);
+      // Cells wholly above the horizon: theta_h + theta_d at most 90 degrees at the upper edges.
+      const std::size_t d = grid.axes.size() - 2;
+      if (grid.kind != GridKind::kInOut &&
+          grid.axes[0].edge_deg(k[0] + 1) + grid.axes[d].edge_deg(k[d] + 1) > 90)
+        continue;
+      const double share = grid.measure(cell) * folds / std::pow(2 * std::acos(-1.0), 2);
+      const double expected = share * kDraws;
+      INFO(grid.description() << ' ' << grid.place(cell));
+      // Five standard deviations of a count.
+      CHECK_THAT(hits[cell], Catch::Matchers::WithinAbs(expected, 5 * std::sqrt(expected)));
+      compared += expected > 100;
+    }
+    CHECK(compared >= 4);
+  }
+}
+
+TEST_CASE("the place of a cell names each angle of its node") {
+  CHECK(halfdiff3d().place(0) == "theta_h 0.00277778 theta_d 0.5 phi_d 0.5");
+  CHECK(inout().place(1) == "theta_i 0 phi_i 0 theta_o 0 phi_o 7.5");
+  CHECK(halfdiff4d(2, 2, 2, 2, 360).place(15) == "theta_h 50.625 phi_h 135 theta_d 67.5 phi_d 270");
 }
 
 }  // namespace clothbrdf::test
