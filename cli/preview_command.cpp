@@ -80,13 +80,13 @@ struct Source {
   std::unique_ptr<Cloth> cloth;
 };
 
-Source read_source(const std::string& file) {
+Source read_source(const std::string& file, const Workers& workers) {
   const std::string stem = std::filesystem::path(file).stem().string();
   if (const Format* format = find_format(file)) {
     return {file, stem, table_cloth(format->read(file), file)};
   }
   if (std::filesystem::path(file).extension() == ".json") {
-    return {file, stem, material_cloth(read_material(file), file)};
+    return {file, stem, material_cloth(read_material(file), file, workers)};
   }
   throw InputError(file + ": the ending '" + std::filesystem::path(file).extension().string() +
                    "' is not that of a table or a material; known: " + table_endings() +
@@ -111,7 +111,7 @@ Panel make_panel(const Source& source, const View& view, const SheetView& sheet,
     workers.advance(image.pixels.size());
     return {caption, std::move(image)};
   }
-  const Shading shading = source.cloth->shading(view.part, sheet_cos_theta_d(sheet));
+  const Shading shading = source.cloth->shading(view.part);
   return {caption, render_sheet(turned(shading, view.turn_deg), sheet, workers)};
 }
 
@@ -152,17 +152,16 @@ void preview(const PreviewOptions& options) {
   const double light_theta = options.light ? sheet.light.theta_deg : kLobesTheta;
   const int threads = options.threads ? parse_threads(*options.threads) : default_threads();
   check_outputs(options);
+  ProgressBar bar;
+  const Workers workers{threads, &bar.progress()};
   std::vector<Source> sources;
   for (const std::string& file : options.files) {
-    sources.push_back(read_source(file));
+    sources.push_back(read_source(file, workers));
     check_shown(sources.back(), show);
   }
   std::vector<AtomicFile> files;
   files.reserve(options.outputs.size());
   for (const std::string& name : options.outputs) files.emplace_back(name);
-
-  ProgressBar bar;
-  const Workers workers{threads, &bar.progress()};
   const std::size_t panels = sources.size() * show.views.size();
   const auto pixels = static_cast<std::size_t>(sheet.size) * static_cast<std::size_t>(sheet.size);
   bar.progress().begin(options.outputs.front(), panels * pixels, "pixels");

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "support/errors.h"
-#include "tabulate/pair_evaluator.h"
+#include "tabulate/batch.h"
 
 namespace clothbrdf {
 namespace {
@@ -14,36 +16,37 @@ constexpr const char* kRgbNames[] = {"R", "G", "B"};
 
 class MaterialCloth final : public Cloth {
  public:
-  explicit MaterialCloth(const Material& material)
-      : model_(std::make_shared<const ClothModel<double>>(material)) {}
+  MaterialCloth(const Material& material, const Workers& workers)
+      : model_(std::make_shared<const ClothModel<double>>(material)), workers_(workers) {}
 
   bool has(Part /*all of them*/) const override { return true; }
 
-  Shading shading(Part part, std::optional<double> cos_theta_d) const override {
-    const auto model = model_;
-    const double rotation = model->material().rotation_deg;
-    std::array<Channel, 3> channels;
-    for (std::size_t c = 0; c < 3; ++c) channels[c] = {kRgbNames[c], part, c};
-    const auto value = [model, channels](const PathMatrix& paths, const PairGeometry<double>& g) {
-      Rgb f{};
-      if (g.above_horizon()) PairEvaluator(*model, paths).evaluate(g, 0, channels, f);
-      return f;
-    };
-    if (!cos_theta_d) {
-      return [model, rotation, value](const Directions& d) {
-        const PairGeometry<double> g = pair_geometry(d.wi, d.wo, rotation);
-        return value(PathMatrix(*model, {g.cos_theta_d}, 1), g);
-      };
-    }
-    const auto paths =
-        std::make_shared<const PathMatrix>(*model, std::vector<double>{*cos_theta_d}, 1);
-    return [paths, rotation, value](const Directions& d) {
-      return value(*paths, pair_geometry(d.wi, d.wo, rotation));
-    };
+  Shading shading(Part part) const override {
+    std::vector<Channel> channels;
+    for (std::size_t c = 0; c < 3; ++c) channels.push_back({kRgbNames[c], part, c});
+    const auto evaluator =
+        std::make_shared<const BatchEvaluator<double>>(*model_, channels, workers_);
+    return Shading(
+        [model = model_, evaluator](std::span<const Directions> directions, std::span<Rgb> f) {
+          const std::size_t count = directions.size();
+          std::vector<double> arrays(9 * count);
+          const auto array = [&](std::size_t k) { return arrays.data() + k * count; };
+          for (std::size_t p = 0; p < count; ++p) {
+            for (std::size_t k = 0; k < 3; ++k) {
+              array(k)[p] = directions[p].wi[k];
+              array(3 + k)[p] = directions[p].wo[k];
+            }
+          }
+          const std::array<double*, 3> to = {array(6), array(7), array(8)};
+          evaluator->evaluate(
+              {{array(0), array(1), array(2)}, {array(3), array(4), array(5)}, count}, to);
+          for (std::size_t p = 0; p < count; ++p) f[p] = {to[0][p], to[1][p], to[2][p]};
+        });
   }
 
  private:
   std::shared_ptr<const ClothModel<double>> model_;
+  Workers workers_;
 };
 
 class TableCloth final : public Cloth {
@@ -52,14 +55,16 @@ class TableCloth final : public Cloth {
 
   bool has(Part part) const override { return channels(part).has_value(); }
 
-  Shading shading(Part part, std::optional<double> /*lookups cost the same*/) const override {
+  Shading shading(Part part) const override {
     const auto table = table_;
     const std::array<std::size_t, 3> wanted = channels(part).value();
-    return [table, wanted](const Directions& d) {
+    return Shading([table, wanted](std::span<const Directions> directions, std::span<Rgb> f) {
       std::vector<double> sample(table->spec().channels.size());
-      table->interpolate(d, sample);
-      return Rgb{sample[wanted[0]], sample[wanted[1]], sample[wanted[2]]};
-    };
+      for (std::size_t p = 0; p < directions.size(); ++p) {
+        table->interpolate(directions[p], sample);
+        f[p] = {sample[wanted[0]], sample[wanted[1]], sample[wanted[2]]};
+      }
+    });
   }
 
  private:
@@ -81,7 +86,8 @@ class TableCloth final : public Cloth {
 
 }  // namespace
 
-std::unique_ptr<Cloth> material_cloth(const Material& material, const std::string& name) {
+std::unique_ptr<Cloth> material_cloth(const Material& material, const std::string& name,
+                                      const Workers& workers) {
   if (!material.wavelengths_nm.empty()) {
     throw InputError(name + ": wavelengths_nm has " +
                      std::to_string(material.wavelengths_nm.size()) +
@@ -91,7 +97,7 @@ std::unique_ptr<Cloth> material_cloth(const Material& material, const std::strin
     throw InputError(name + ": absorption has " + std::to_string(material.channel_count()) +
                      " values; a picture needs R, G and B");
   }
-  return std::make_unique<MaterialCloth>(material);
+  return std::make_unique<MaterialCloth>(material, workers);
 }
 
 std::unique_ptr<Cloth> table_cloth(Table table, const std::string& name) {
@@ -107,9 +113,12 @@ std::unique_ptr<Cloth> table_cloth(Table table, const std::string& name) {
 
 Shading turned(const Shading& shading, double turn_deg) {
   const SinCos<double> back = sincosd(-turn_deg);
-  return [shading, back](const Directions& d) {
-    return shading({turned(d.wi, back), turned(d.wo, back)});
-  };
+  return Shading([shading, back](std::span<const Directions> directions, std::span<Rgb> f) {
+    std::vector<Directions> there;
+    for (const Directions& d : directions)
+      there.push_back({turned(d.wi, back), turned(d.wo, back)});
+    shading(there, f);
+  });
 }
 
 }  // namespace clothbrdf

@@ -2,18 +2,37 @@
 
 #include <functional>
 #include <memory>
-#include <optional>
+#include <span>
 #include <string>
+#include <utility>
 
 #include "model/material.h"
 #include "support/image.h"
+#include "support/progress.h"
 #include "table/table.h"
 
 namespace clothbrdf {
 
-/// f_r of linear R, G and B at a pair of directions of the cloth's frame; 0 on or below the
-/// horizon. May be called from several threads at once.
-using Shading = std::function<Rgb(const Directions&)>;
+/// f_r of linear R, G and B at pairs of directions of the cloth's frame; 0 on or below the horizon.
+/// May be called from several threads at once.
+class Shading {
+ public:
+  using Batch = std::function<void(std::span<const Directions> directions, std::span<Rgb> f)>;
+
+  explicit Shading(Batch batch) : batch_(std::move(batch)) {}
+
+  void operator()(std::span<const Directions> directions, std::span<Rgb> f) const {
+    batch_(directions, f);
+  }
+  Rgb operator()(const Directions& directions) const {
+    Rgb f{};
+    batch_(std::span(&directions, 1), std::span(&f, 1));
+    return f;
+  }
+
+ private:
+  Batch batch_;
+};
 
 /// What pictures are made of: a material or a table.
 class Cloth {
@@ -23,13 +42,14 @@ class Cloth {
   /// Whether the component can be shown on its own.
   virtual bool has(Part part) const = 0;
 
-  /// A part of f_r. `cos_theta_d` is given where it is the same for all directions that will be
-  /// asked, which saves most of the work for a material.
-  virtual Shading shading(Part part, std::optional<double> cos_theta_d) const = 0;
+  /// A part of f_r.
+  virtual Shading shading(Part part) const = 0;
 };
 
-/// Throws InputError, starting with `name`, for a material that is not of R, G and B.
-std::unique_ptr<Cloth> material_cloth(const Material& material, const std::string& name);
+/// Evaluated as the model does, to rounding. Throws InputError, starting with `name`, for a
+/// material that is not of R, G and B.
+std::unique_ptr<Cloth> material_cloth(const Material& material, const std::string& name,
+                                      const Workers& workers = 1);
 
 /// Interpolated between the table's nodes (Table::interpolate). Throws InputError, starting with
 /// `name`, where the table has no channels R, G and B or is no grid.

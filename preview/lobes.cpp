@@ -47,7 +47,7 @@ Plane outlines(const Cloth& cloth, const LobesView& view, double azimuth_deg) {
   Plane plane;
   std::array<double, kAngles> sum{};
   for (const Part part : parts) {
-    const Shading shading = turned(cloth.shading(part, std::nullopt), view.turn_deg);
+    const Shading shading = turned(cloth.shading(part), view.turn_deg);
     Outline outline;
     Rgb colour{};
     // The ends lie on the horizon.

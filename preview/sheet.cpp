@@ -4,6 +4,8 @@
 
 #include <cmath>
 #include <numbers>
+#include <span>
+#include <vector>
 
 #include "support/threads.h"
 
@@ -48,25 +50,23 @@ Image render_sheet(const Shading& shading, const SheetView& view, const Workers&
   Image image(view.size, view.size);
   with_threads(workers.threads, [&] {
     tbb::parallel_for(0, view.size, [&](int row) {
+      std::vector<Directions> directions;
       for (int column = 0; column < view.size; ++column) {
         const Slope slope =
             sheet_slope((column + 0.5) / view.size, (view.size - row - 0.5) / view.size);
-        const Directions d = {to_cloth(slope, light), to_cloth(slope, eye)};
-        if (!d.above_horizon()) continue;
-        Rgb f = shading(d);
-        for (double& value : f) value *= white * d.wi[2];
-        image.at(column, row) = f;
+        directions.push_back({to_cloth(slope, light), to_cloth(slope, eye)});
+      }
+      const std::span<Rgb> pixels(&image.at(0, row), directions.size());
+      shading(directions, pixels);
+      for (std::size_t p = 0; p < pixels.size(); ++p) {
+        const Directions& d = directions[p];
+        const double scale = d.above_horizon() ? white * d.wi[2] : 0;
+        for (double& value : pixels[p]) value *= scale;
       }
       workers.advance(static_cast<std::uint64_t>(view.size));
     });
   });
   return image;
-}
-
-double sheet_cos_theta_d(const SheetView& view) {
-  const DirectionPair pair{view.light.theta_deg, view.light.phi_deg, view.eye.theta_deg,
-                           view.eye.phi_deg};
-  return pair_geometry(pair, 0.0).cos_theta_d;
 }
 
 }  // namespace clothbrdf

@@ -38,7 +38,4 @@ struct SheetView {
 /// from light or eye. Throws Cancelled.
 Image render_sheet(const Shading& shading, const SheetView& view, const Workers& workers);
 
-/// cos(theta_d), the same all over a sheet.
-double sheet_cos_theta_d(const SheetView& view);
-
 }  // namespace clothbrdf

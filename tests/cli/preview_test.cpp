@@ -48,7 +48,7 @@ Image drawn(const Arguments& files, const Arguments& options) {
 Image sheet(const std::string& name, SheetView view, Part part = Part::kTotal, double turn = 0) {
   view.size = kSize;
   const auto cloth = material_cloth(read_material(preset(name)), name);
-  const Shading shading = cloth->shading(part, sheet_cos_theta_d(view));
+  const Shading shading = cloth->shading(part);
   return render_sheet(turned(shading, turn), view, 1);
 }
 
@@ -206,8 +206,7 @@ TEST_CASE("materials and tables can be drawn in one picture") {
   std::vector<std::vector<Image>> rows = {{sheet("cotton", {})}};
   for (const char* name : {"t.exr", "t.binary"}) {
     const auto cloth = table_cloth(format_for(folder / name).read(folder / name), name);
-    rows.push_back(
-        {render_sheet(cloth->shading(Part::kTotal, std::nullopt), {{}, {}, kSize, 0}, 1)});
+    rows.push_back({render_sheet(cloth->shading(Part::kTotal), {{}, {}, kSize, 0}, 1)});
   }
   CHECK(same_panels(picture, arranged(rows)));
   CHECK(drawn({(folder / "t.exr").string()}, {"--show", "components"}).width == 64);

@@ -19,7 +19,7 @@ inline std::unique_ptr<Cloth> preset_cloth(const std::string& name) {
 /// The sheet of a cloth with its weave turned.
 inline Image sheet_of(const Cloth& cloth, const SheetView& view, Part part = Part::kTotal,
                       double turn_deg = 0) {
-  return render_sheet(turned(cloth.shading(part, sheet_cos_theta_d(view)), turn_deg), view, 2);
+  return render_sheet(turned(cloth.shading(part), turn_deg), view, 2);
 }
 
 /// The slope of the sheet at the middle of a pixel.
