@@ -1,4 +1,4 @@
-#include <cmath>
+#include <algorithm>
 #include <filesystem>
 #include <iomanip>
 #include <iostream>
@@ -35,10 +35,8 @@ struct ConvertOptions {
 };
 
 bool holds_components(const TableSpec& spec) {
-  for (const Channel& channel : spec.channels) {
-    if (channel.part != Part::kTotal) return true;
-  }
-  return false;
+  return std::any_of(spec.channels.begin(), spec.channels.end(),
+                     [](const Channel& channel) { return channel.part != Part::kTotal; });
 }
 
 /// What the target can hold of a source.

@@ -37,7 +37,7 @@ struct Outline {
 /// The outlines of a plane, the inner ones first.
 using Plane = std::vector<Outline>;
 
-double theta_at(int k) { return (k - kAngles / 2) * 180.0 / (kAngles - 1); }
+double theta_at(int k) { return 180.0 * k / (kAngles - 1) - 90; }
 
 Plane outlines(const Cloth& cloth, const LobesView& view, double azimuth_deg) {
   std::vector<Part> parts = {Part::kDiffuse, Part::kInternal, Part::kSpecular};
@@ -125,8 +125,9 @@ Image render_lobes(const Cloth& cloth, const LobesView& view) {
     for (int column = 0; column < view.size; ++column) {
       Rgb sum{};
       for (int s = 0; s < kSamples * kSamples; ++s) {
+        const int down = s / kSamples;
         const double x = column + (s % kSamples + 0.5) / kSamples - view.size * 0.5;
-        const double y = base - row - (s / kSamples + 0.5) / kSamples;
+        const double y = base - row - (down + 0.5) / kSamples;
         const double radius = kRadius * view.size;
         const Rgb c = colour_at(both[lower ? 1 : 0], x / radius, y / radius, scale,
                                 view.light_theta_deg, std::max(kLine, 0.5 / radius));

@@ -16,8 +16,8 @@ struct Slope {
 };
 Slope sheet_slope(double x, double y);
 
-/// A direction, given in the frame of the whole sheet, in the frame of the cloth at a slope.
-Vector3<double> to_cloth(const Slope& slope, const Vector3<double>& direction);
+/// A direction w, given in the frame of the whole sheet, in the frame of the cloth at a slope.
+Vector3<double> to_cloth(const Slope& slope, const Vector3<double>& w);
 
 /// A direction from the normal of the flat sheet, degrees.
 struct SheetDirection {

@@ -39,8 +39,10 @@ std::vector<Step> steps_in_cells(const Axis& axis) {
 }
 
 std::vector<Step> even_steps(double range, int count) {
-  std::vector<Step> steps;
-  for (int k = 0; k < count; ++k) steps.push_back({range * (k + 0.5) / count, range / count});
+  std::vector<Step> steps(static_cast<std::size_t>(count));
+  for (int k = 0; k < count; ++k) {
+    steps[static_cast<std::size_t>(k)] = {range * (k + 0.5) / count, range / count};
+  }
   return steps;
 }
 
@@ -121,7 +123,8 @@ std::vector<double> incident_thetas(const Grid& grid) {
   thetas.push_back(kBeyond);
   const bool over_wo = grid.kind == GridKind::kInOut;
   const Axis& axis = over_wo ? grid.axes[0] : grid.axes[grid.axes.size() - 2];
-  const double steepest = over_wo ? axis.node_deg(axis.size - 1) : axis.edge_deg(axis.size - 1);
+  const double steepest = over_wo ? axis.node_deg(axis.size - 1)
+                                  : std::max(kHighestTheta, axis.edge_deg(axis.size - 1));
   std::erase_if(thetas, [&](double theta) { return theta > steepest; });
   return thetas;
 }

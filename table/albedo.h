@@ -20,9 +20,9 @@ struct Albedo {
 /// The steepest incidence at which an albedo is judged, degrees.
 inline constexpr double kHighestTheta = 85;
 
-/// For theta_i = 0, 5 ... 85 and 89 degrees, as far as the table goes: the largest albedo over
-/// channels and 16 azimuths of the light (one, where the table knows none). In/out tables go to
-/// their last node, half/difference tables to the last cell of theta_d.
+/// For theta_i = 0, 5 ... 85 and 89 degrees: the largest albedo over channels and 16 azimuths of
+/// the light (one, where the table knows none). In/out tables go to their last node; 89 degrees are
+/// left out where the last cell of theta_d reaches below.
 ///
 /// Half/difference tables are integrated over half vectors, in steps at most half as wide as their
 /// cells; f_r between nodes is their mean weighted by cos(theta_i) cos(theta_o), too: it may grow

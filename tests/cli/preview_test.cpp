@@ -104,7 +104,7 @@ TEST_CASE("exposure, light and eye of preview reach the sheet") {
   CHECK(same_panels(picture, arranged({{sheet("silk", {{40, 30}, {25.5, -100}, kSize, -1.5})}})));
 }
 
-TEST_CASE("--size is the edge of a panel in pixels") {
+TEST_CASE("option --size is the edge of a panel in pixels") {
   const TemporaryFolder folder;
   const std::string png = (folder / "p.png").string();
   output_of({"preview", kSilk, kCotton, "-o", png, "--size", "20", "--show", "weave"});
@@ -115,7 +115,7 @@ TEST_CASE("--size is the edge of a panel in pixels") {
   CHECK(read_png(png).width == 4 + 256 + 4);
 }
 
-TEST_CASE("--show chooses the panels, one row a file") {
+TEST_CASE("option --show chooses the panels, one row a file") {
   const auto row_of = [](const std::string& name, const std::string& show) {
     const Image plain = sheet(name, {});
     const Image weave = sheet(name, {}, Part::kTotal, 45);
@@ -135,7 +135,7 @@ TEST_CASE("--show chooses the panels, one row a file") {
   }
 }
 
-TEST_CASE("--light says the angle of the lobes' light; 30 degrees where left out") {
+TEST_CASE("option --light says the angle of the lobes' light, and 30 degrees where left out") {
   CHECK(same_panels(drawn({kSilk}, {"--show", "lobes"}), arranged({{lobes("silk", 30)}})));
   CHECK(same_panels(drawn({kSilk}, {"--show", "lobes", "--light", "55,10"}),
                     arranged({{lobes("silk", 55)}})));

@@ -35,7 +35,8 @@ std::vector<double> model_albedo(std::size_t theta) {
     kProducer->fill_rows(theta * 2 * kAzimuths + azimuth, row);
     double sum = 0;
     for (std::size_t k = 0; k < std::size_t{kThetas} * kPhis; ++k) {
-      const SinCos<double> theta_o = sincosd(90.0 / kThetas * static_cast<double>(k / kPhis));
+      const std::size_t theta_index = k / kPhis;
+      const SinCos<double> theta_o = sincosd(90.0 / kThetas * static_cast<double>(theta_index));
       sum += row[k] * theta_o.cos * theta_o.sin;
     }
     albedo.push_back(sum * degrees_to_radians(90.0 / kThetas) * degrees_to_radians(360.0 / kPhis));
@@ -72,11 +73,12 @@ TEST_CASE("a table that reflects evenly has the same albedo at every angle, on e
   }
 }
 
-TEST_CASE("an albedo is given every 5 degrees and at 89, or up to the last node of the light") {
-  const std::vector<Albedo> all = albedo_by_theta(lambertian(halfdiff3d(4, 4, 4), 0.5), 1);
+TEST_CASE("an albedo is given every 5 degrees and at 89, as far as the table goes") {
+  const std::vector<Albedo> all = albedo_by_theta(lambertian(halfdiff3d(4, 90, 4), 0.5), 1);
   REQUIRE(all.size() == 19);
   for (std::size_t k = 0; k < 18; ++k) CHECK(all[k].theta_i_deg == 5.0 * static_cast<double>(k));
   CHECK(all.back().theta_i_deg == 89);
+  CHECK(albedo_by_theta(lambertian(halfdiff3d(4, 4, 4), 0.5), 1).back().theta_i_deg == 85);
   const std::vector<Albedo> utia = albedo_by_theta(lambertian(inout(6, 1, 6, 1), 0.5), 1);
   CHECK(utia.back().theta_i_deg == 75);
 }
