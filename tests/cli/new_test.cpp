@@ -92,7 +92,7 @@ TEST_CASE("a colour is that of both yarns, and changes nothing else of them") {
   }
 }
 
-TEST_CASE("a yarn's own colour goes before that of both; what no colour is given for stays") {
+TEST_CASE("a yarn's own colour goes before that of both, and what no colour is given for stays") {
   const TemporaryFolder folder;
   const std::string file = (folder / "shot.json").string();
   CHECK(made({"silk", "--colour", "#b36", "--weft-colour", "#246", "-o", file}) ==

@@ -151,7 +151,7 @@ TEST_CASE("a signal ends tabulate promptly, by that signal, and leaves only what
   }
 }
 
-TEST_CASE("files finished before the signal stay and are reported; the others are named") {
+TEST_CASE("files finished before the signal stay and are reported, and the others are named") {
   const TemporaryFolder folder;
   const std::filesystem::path finished = folder / "first.binary";
   const std::string second = (folder / "second.exr").string();

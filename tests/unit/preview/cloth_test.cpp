@@ -206,7 +206,8 @@ TEST_CASE("a table's channels are found by name and part, whatever their order")
   CHECK_FALSE(cloth->has(Part::kSpecular));
 }
 
-TEST_CASE("a cloth has the parts that its table has; a material has all; both give the same") {
+TEST_CASE(
+    "a cloth has the parts that its table has, and a material has all, and both give the same") {
   const Material material = read_material(preset("silk"));
   const auto whole = material_cloth(material, "m");
   const Grid grid = halfdiff4d(6, 6, 5, 5);

@@ -77,7 +77,7 @@ TEST_CASE("a table that reflects evenly does so on every other grid") {
   }
 }
 
-TEST_CASE("resampling keeps channels, material and precision; values are those of nodes") {
+TEST_CASE("resampling keeps channels, material and precision, and values are those of nodes") {
   TableSpec spec = preset_table("silk", inout(3, 4, 3, 4), true).spec();
   spec.cells = {.average = true, .tolerance = 0.01};
   const std::vector<double> values(spec.cell_count() * spec.channels.size(), 0.25);
