@@ -2,12 +2,10 @@
 // cells, or pairs of directions, per second of processor time.
 
 #include <benchmark/benchmark.h>
-#include <hwy/targets.h>
 
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <cstring>
 #include <memory>
 #include <random>
@@ -21,6 +19,7 @@
 #include "model/reflectance.h"
 #include "table/producer.h"
 #include "tabulate/batch.h"
+#include "tabulate/batch_kernel.h"
 #include "tabulate/model_producer.h"
 
 namespace clothbrdf {
@@ -92,13 +91,12 @@ struct Batch {
   std::array<std::vector<T>, 6> in;
 };
 
-/// The batch evaluator, with registers of every width or only of those in `targets`.
+/// The batch evaluator, with one of batch_targets().
 template <class T>
-void batch(benchmark::State& state, const Material& material, std::int64_t targets) {
-  hwy::SetSupportedTargetsForTest(targets);
-  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+void batch(benchmark::State& state, const Material& material, std::size_t target) {
   const ClothModel<double> model(material);
-  const BatchEvaluator<T> evaluator(model, material_channels(material, false), 1);
+  BatchEvaluator<T> evaluator(model, material_channels(material, false), 1);
+  evaluator.choose_target(target);
   constexpr std::size_t kPairs = 4096;
   const Batch<T> pairs(kPairs);
   std::array<std::vector<T>, 3> f;
@@ -117,8 +115,6 @@ void batch(benchmark::State& state, const Material& material, std::int64_t targe
   }
   state.counters["multiply_adds"] = static_cast<double>(evaluator.multiply_adds());
   count_cells(state, kPairs);
-  hwy::SetSupportedTargetsForTest(0);
-  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
 }
 
 /// Preparing a batch evaluator.
@@ -206,11 +202,10 @@ void register_all() {
   add_rows("average/silk.binary", silk, halfdiff3d(), average, 30);
   add_rows("average/halfdiff4d", silk, halfdiff4d(), average, 500);
   add_rows("average/inout", silk, inout(), average, 60);
-  for (const bool avx2 : {false, true}) {
-    const std::int64_t targets = avx2 ? HWY_AVX2 | HWY_SSE4 : 0;
-    const std::string width = avx2 ? "_avx2" : "";
-    add("batch" + width + "/two_yarns_single", batch<float>, two_yarns(), targets);
-    add("batch" + width + "/two_yarns_all", batch<float>, two_yarns_all(), targets);
+  for (std::size_t target = 0; target < batch_targets().size(); ++target) {
+    const std::string prefix = std::string("batch ") + batch_targets()[target].name;
+    add(prefix + "/two_yarns_single", batch<float>, two_yarns(), target);
+    add(prefix + "/two_yarns_all", batch<float>, two_yarns_all(), target);
   }
   add("batch/silk", batch<float>, silk, 0);
   add("batch_double/two_yarns_single", batch<double>, two_yarns(), 0);

@@ -15,6 +15,7 @@
 #include <cstring>
 #include <fstream>
 #include <limits>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -104,6 +105,13 @@ class RowBuffer {
                   (largest < 1e5 ? "; leave out --half to store 32-bit floats" : ""));
 }
 
+// Without a branch for each value.
+bool all_fit(std::span<const double> values, double largest) {
+  std::size_t beyond = 0;
+  for (const double value : values) beyond += std::abs(value) > largest ? 1U : 0U;
+  return beyond == 0;
+}
+
 template <class Sample>
 void write_lines(const Producer& producer, Imf::OutputFile& out, Imf::PixelType type,
                  const std::string& name, Workers workers) {
@@ -112,16 +120,24 @@ void write_lines(const Producer& producer, Imf::OutputFile& out, Imf::PixelType 
   const double largest =
       type == Imf::HALF ? double{HALF_MAX} : double{std::numeric_limits<float>::max()};
   RowBuffer<Sample> buffer(spec, size, type);
-  stream_rows(producer, workers, [&](std::size_t row, std::span<double> values) {
+  const auto check = [&](std::size_t row, std::span<double> values) {
+    if (all_fit(values, largest)) return;
+    const auto at =
+        std::find_if(values.begin(), values.end(), [&](double v) { return std::abs(v) > largest; });
+    const auto index = static_cast<std::size_t>(at - values.begin());
+    refuse_value(spec, name, row + index / spec.row_values(), index % spec.row_values(), *at,
+                 largest);
+  };
+  const auto write = [&](std::size_t row, std::span<double> values) {
     for (; !values.empty(); ++row, values = values.subspan(spec.row_values())) {
-      for (std::size_t i = 0; i < spec.row_values(); ++i) {
-        if (std::abs(values[i]) > largest) refuse_value(spec, name, row, i, values[i], largest);
-        buffer.samples()[i] = Sample(static_cast<float>(values[i]));
-      }
+      const std::span<const double> of_row = values.first(spec.row_values());
+      std::transform(of_row.begin(), of_row.end(), buffer.samples().begin(),
+                     [](double v) { return Sample(static_cast<float>(v)); });
       out.setFrameBuffer(buffer.frame(row * size.lines_per_row));
       out.writePixels(static_cast<int>(size.lines_per_row));
     }
-  });
+  };
+  stream_rows(producer, workers, write, check);
 }
 
 Grid exr_grid(Reflectance reflectance) {
@@ -164,12 +180,15 @@ void write_exr(const Producer& producer, AtomicFile& file, const WriteOptions& o
                    (options.half ? sizeof(half) : sizeof(float)));
     }
     AtomicOStream stream(file);
-    Imf::OutputFile out(stream, header);
-    if (options.half) {
-      write_lines<half>(producer, out, type, name, options.workers);
-    } else {
-      write_lines<float>(producer, out, type, name, options.workers);
+    {
+      Imf::OutputFile out(stream, header);
+      if (options.half) {
+        write_lines<half>(producer, out, type, name, options.workers);
+      } else {
+        write_lines<float>(producer, out, type, name, options.workers);
+      }
     }
+    stream.flush();
   } catch (const Iex::BaseExc& error) {
     throw WorkError(name + ": cannot write: " + error.what());
   }

@@ -2,8 +2,10 @@
 
 #include <ImfIO.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "support/atomic_file.h"
 
@@ -11,20 +13,42 @@ namespace clothbrdf {
 
 // Internal to formats/.
 
-/// OpenEXR's own writer, into our file.
+/// OpenEXR's own writer, into our file. It writes in small pieces, which are gathered here: call
+/// flush() once it is done.
 class AtomicOStream final : public Imf::OStream {
  public:
-  explicit AtomicOStream(AtomicFile& file) : Imf::OStream(file.name().c_str()), file_(file) {}
-  void write(const char bytes[], int count) override {
-    file_.write_at(position_, std::as_bytes(std::span(bytes, static_cast<std::size_t>(count))));
-    position_ += static_cast<std::uint64_t>(count);
+  explicit AtomicOStream(AtomicFile& file) : Imf::OStream(file.name().c_str()), file_(file) {
+    buffer_.reserve(kBufferBytes);
   }
-  std::uint64_t tellp() override { return position_; }
-  void seekp(std::uint64_t position) override { position_ = position; }
+  void write(const char bytes[], int count) override {
+    const auto piece = std::as_bytes(std::span(bytes, static_cast<std::size_t>(count)));
+    if (buffer_.size() + piece.size() > kBufferBytes) flush();
+    if (piece.size() > kBufferBytes) {
+      file_.write_at(start_, piece);
+      start_ += piece.size();
+    } else {
+      buffer_.insert(buffer_.end(), piece.begin(), piece.end());
+    }
+  }
+  std::uint64_t tellp() override { return start_ + buffer_.size(); }
+  void seekp(std::uint64_t position) override {
+    flush();
+    start_ = position;
+  }
+
+  /// Throws WorkError, and keeps what is not written.
+  void flush() {
+    file_.write_at(start_, buffer_);
+    start_ += buffer_.size();
+    buffer_.clear();
+  }
 
  private:
+  static constexpr std::size_t kBufferBytes = std::size_t{1} << 20U;
+
   AtomicFile& file_;
-  std::uint64_t position_ = 0;
+  std::uint64_t start_ = 0;  // of the buffer, in the file
+  std::vector<std::byte> buffer_;
 };
 
 }  // namespace clothbrdf

@@ -71,9 +71,12 @@ void write_exr_picture(const Image& image, AtomicFile& file) {
                                         3 * sizeof(float), 3 * width * sizeof(float)));
     }
     AtomicOStream stream(file);
-    Imf::OutputFile out(stream, header);
-    out.setFrameBuffer(frame);
-    out.writePixels(image.height);
+    {
+      Imf::OutputFile out(stream, header);
+      out.setFrameBuffer(frame);
+      out.writePixels(image.height);
+    }
+    stream.flush();
   } catch (const Iex::BaseExc& error) {
     throw WorkError(file.name().string() + ": cannot write: " + error.what());
   }

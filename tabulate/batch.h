@@ -32,6 +32,9 @@ class BatchEvaluator {
   /// Prepares tables, some milliseconds. Keeps a reference to the model.
   BatchEvaluator(const ClothModel<double>& model, std::vector<Channel> channels, Workers workers);
 
+  /// For tests and benchmarks: the kernel to use, an index of batch_targets().
+  void choose_target(std::size_t target) { target_ = target; }
+
   /// values[channel][pair]. May be called from several threads at once; each pair's value has the
   /// same bits in any batch.
   void evaluate(const DirectionArrays<T>& directions, std::span<T* const> values) const;
@@ -47,9 +50,10 @@ class BatchEvaluator {
 
   LobeLanes lanes_;
   WeightTable<T> table_;
-  std::vector<T> weft_;  // padded
-  std::vector<T> warp_;
+  AlignedVector<T> weft_;  // padded
+  AlignedVector<T> warp_;
   std::vector<T> constants_;
+  std::size_t target_ = 0;
 };
 
 }  // namespace clothbrdf

@@ -1,6 +1,7 @@
 #include "tabulate/batch_kernel.h"
 
-// Compiled once for each kind of vector registers.
+// Compiled once for each kind of vector registers; more would hardly be faster.
+#define HWY_DISABLED_TARGETS (HWY_AVX3_DL | HWY_SSSE3)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "tabulate/batch_kernel.cpp"
 #include <hwy/foreach_target.h>
@@ -8,6 +9,7 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
+#include <vector>
 
 HWY_BEFORE_NAMESPACE();
 namespace clothbrdf {
@@ -65,10 +67,10 @@ void Prepare(const BatchPlan<T>& plan, const DirectionArrays<T>& in, Block<T>& b
     const auto normal = hn::Mul(h_z, inverse);
     auto factor = normal;
     if (plan.microfacet) {
-      // min(1 / (2 low), h_n / x) / (2 high), model.md section 7.
+      // min(1 / (2 low), h_n / x) / (2 high), model.md section 7; h_n / x = 2 h_z / length^2.
       const auto unshadowed = hn::Div(half, low);
-      const auto shadowed = hn::Div(normal, x);
-      factor = hn::Mul(factor, hn::Div(hn::Mul(half, hn::Min(unshadowed, shadowed)), high));
+      const auto shadowed = hn::Mul(hn::Add(normal, normal), inverse);
+      factor = hn::Mul(hn::Mul(factor, hn::Min(unshadowed, shadowed)), hn::Div(half, high));
     } else {
       factor = hn::Div(factor, wi_z);
     }
@@ -207,18 +209,38 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace clothbrdf {
+namespace {
 
-HWY_EXPORT(RunFloat);
-HWY_EXPORT(RunDouble);
-
-void run_batch(const BatchPlan<float>& plan, const DirectionArrays<float>& directions,
-               float* const* values) {
-  HWY_DYNAMIC_DISPATCH(RunFloat)(plan, directions, values);
+std::vector<BatchTarget> supported_targets() {
+  std::vector<BatchTarget> targets;
+#if HWY_TARGETS & HWY_AVX2
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
+      __builtin_cpu_supports("bmi2")) {
+    targets.push_back({"AVX2", N_AVX2::RunFloat, N_AVX2::RunDouble});
+  }
+#endif
+#if HWY_TARGETS & HWY_AVX3
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+      __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&
+      __builtin_cpu_supports("avx512vl")) {
+    targets.push_back({"AVX-512", N_AVX3::RunFloat, N_AVX3::RunDouble});
+  }
+#endif
+#if HWY_TARGETS & HWY_SSE4
+  if (__builtin_cpu_supports("sse4.2") && __builtin_cpu_supports("aes") &&
+      __builtin_cpu_supports("pclmul")) {
+    targets.push_back({"SSE4", N_SSE4::RunFloat, N_SSE4::RunDouble});
+  }
+#endif
+  targets.push_back({"baseline", HWY_STATIC_DISPATCH(RunFloat), HWY_STATIC_DISPATCH(RunDouble)});
+  return targets;
 }
 
-void run_batch(const BatchPlan<double>& plan, const DirectionArrays<double>& directions,
-               double* const* values) {
-  HWY_DYNAMIC_DISPATCH(RunDouble)(plan, directions, values);
+}  // namespace
+
+std::span<const BatchTarget> batch_targets() {
+  static const std::vector<BatchTarget> kTargets = supported_targets();
+  return kTargets;
 }
 
 }  // namespace clothbrdf

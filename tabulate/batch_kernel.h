@@ -21,9 +21,17 @@ struct BatchPlan {
   const T* constants;  ///< [channel]
 };
 
-void run_batch(const BatchPlan<float>& plan, const DirectionArrays<float>& directions,
-               float* const* values);
-void run_batch(const BatchPlan<double>& plan, const DirectionArrays<double>& directions,
-               double* const* values);
+/// The kernels for one kind of vector registers.
+struct BatchTarget {
+  const char* name;
+  void (*run_float)(const BatchPlan<float>&, const DirectionArrays<float>&, float* const* values);
+  void (*run_double)(const BatchPlan<double>&, const DirectionArrays<double>&,
+                     double* const* values);
+};
+
+/// Those that this processor has, the fastest first: AVX2 before AVX-512, which was an eighth
+/// slower where it was measured (Zen 5: docs/performance.md). (Highway's own dispatch would do, but
+/// loading its library measures timers for 3 milliseconds, more than a table takes.)
+std::span<const BatchTarget> batch_targets();
 
 }  // namespace clothbrdf

@@ -16,9 +16,8 @@ namespace clothbrdf {
 ///     h_warp^2 + h_n^2)
 ///         + constant(channel)
 ///
-/// Each yarn has one lane for its surface reflection and one for each of its few_lobes. Shares,
-/// norms, k_s and k_i are in the weights; effects that are off have no lanes. Keeps a reference to
-/// the model.
+/// Each yarn has one lane for its surface reflection and one for each of its few_lobes (none
+/// without layers). Shares, norms, k_s and k_i are in the weights. Keeps a reference to the model.
 class LobeLanes {
  public:
   LobeLanes(const ClothModel<double>& model, std::vector<Channel> channels, double tolerance);

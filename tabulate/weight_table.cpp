@@ -13,7 +13,7 @@
 namespace clothbrdf {
 namespace {
 
-constexpr int kMostPieceBits = 6;
+constexpr int kMostPieceBits = 7;
 constexpr int kOctaves = -kFirstOctave;  // and a little of the next one, for cos_theta_d near 1
 constexpr double kLastOctaveEnd = 1 + 0x1p-3;
 
@@ -75,10 +75,15 @@ class Octaves {
 };
 
 /// How far two rows of weights put f apart, at half vectors of every tilt and a few azimuths.
+/// Internal light vanishes with cos_theta_d^2: below kLeastCosine its error is seen relative to the
+/// value there.
 class Measure {
  public:
   explicit Measure(const LobeLanes& lanes)
-      : lanes_(lanes.size()), channels_(lanes.channels().size()) {
+      : lanes_(lanes.size()),
+        channels_(lanes.channels().size()),
+        least_(lanes.size() * lanes.channels().size()) {
+    lanes.weights(kLeastCosine, least_);
     for (double tilt : {0.0, 1e-3, 1e-2, 0.05, 0.2, 0.7, 2.0, 10.0, 100.0}) {
       for (const double along_weft : {0.0, 0.3, 1.0}) {
         const double tangent2 = tilt * tilt;
@@ -93,7 +98,8 @@ class Measure {
     }
   }
 
-  double operator()(const Row& approximate, const Row& exact) const {
+  double operator()(double y, const Row& approximate, const Row& exact) const {
+    const Row& reference = Octaves::cosine(y) < kLeastCosine ? least_ : exact;
     double largest = 0;
     for (const Row& density : densities_) {
       for (std::size_t c = 0; c < channels_; ++c) {
@@ -102,7 +108,7 @@ class Measure {
         for (std::size_t l = 0; l < lanes_; ++l) {
           const std::size_t i = c * lanes_ + l;
           off += (approximate[i] - exact[i]) * density[l];
-          sum += exact[i] * density[l];
+          sum += reference[i] * density[l];
         }
         if (off != 0) largest = std::max(largest, std::abs(off / sum));
       }
@@ -113,6 +119,7 @@ class Measure {
  private:
   std::size_t lanes_;
   std::size_t channels_;
+  Row least_;  // weights at kLeastCosine
   std::vector<Row> densities_;
 };
 
@@ -126,7 +133,7 @@ double octave_error(const Octaves& octaves, const LobeLanes& lanes, const Measur
           Octaves::place(static_cast<int>(k / kBetween.size()), kBetween[k % kBetween.size()]);
       Row exact(lanes.size() * lanes.channels().size());
       lanes.weights(Octaves::cosine(y), exact);
-      errors[k] = measure(octaves.at(y), exact);
+      errors[k] = measure(y, octaves.at(y), exact);
     });
   });
   return *std::max_element(errors.begin(), errors.end());
@@ -159,7 +166,8 @@ class Pieces {
  public:
   static constexpr int kDegree = kWeightDegree<T>;
 
-  Pieces(const Octaves& octaves, const LobeLanes& lanes, const Measure& measure, int bits)
+  Pieces(const Octaves& octaves, const LobeLanes& lanes, const Measure& measure, int bits,
+         Workers workers)
       : lanes_(lanes.size()),
         padded_((lanes_ + kLanePadding<T> - 1) / kLanePadding<T> * kLanePadding<T>) {
     std::array<double, kDegree + 1> points;
@@ -170,9 +178,9 @@ class Pieces {
     table.channels = lanes.channels().size();
     table.piece_bits = bits;
     const std::size_t pieces = (std::size_t{kOctaves} << bits) + 1;
-    table.coefficients = hwy::AllocateAligned<T>(pieces * table.row_size());
-    std::fill_n(table.coefficients.get(), pieces * table.row_size(), T(0));
-    for (std::size_t piece = 0; piece < pieces; ++piece) {
+    table.coefficients.assign(pieces * table.row_size(), T(0));
+    std::vector<double> errors(pieces);
+    const auto make = [&](std::size_t piece) {
       const int octave = static_cast<int>(piece >> bits);
       const double width = std::ldexp(1.0, kFirstOctave + octave - bits);
       const double low = std::ldexp(1.0, kFirstOctave + octave) +
@@ -180,12 +188,15 @@ class Pieces {
       const auto y_at = [&](double t) { return low + width * (t + 1) / 2; };
       std::array<Row, kDegree + 1> values;
       for (std::size_t p = 0; p < values.size(); ++p) values[p] = octaves.at(y_at(points[p]));
-      T* const to = table.coefficients.get() + piece * table.row_size();
+      T* const to = table.coefficients.data() + piece * table.row_size();
       fill(matrix, values, to);
       for (const double t : {-1.0, 0.0, 0.93}) {
-        error = std::max(error, measure(evaluate(to, t), octaves.at(y_at(t))));
+        errors[piece] =
+            std::max(errors[piece], measure(y_at(t), evaluate(to, t), octaves.at(y_at(t))));
       }
-    }
+    };
+    with_threads(workers.threads, [&] { tbb::parallel_for(std::size_t{0}, pieces, make); });
+    error = *std::max_element(errors.begin(), errors.end());
   }
 
   WeightTable<T> table;
@@ -238,7 +249,7 @@ WeightTable<T> weight_table(const LobeLanes& lanes, double tolerance, Workers wo
     const double octave_share = octave_error(octaves, lanes, measure, workers);
     if (octave_share > tolerance / 2) continue;
     for (int bits = 3; bits <= kMostPieceBits; ++bits) {
-      Pieces<T> pieces(octaves, lanes, measure, bits);
+      Pieces<T> pieces(octaves, lanes, measure, bits, workers);
       if (pieces.error + octave_share <= tolerance) return std::move(pieces.table);
     }
     return {};

@@ -1,11 +1,10 @@
 #pragma once
 
-#include <hwy/aligned_allocator.h>
-
 #include <cstddef>
 #include <cstdint>
 
 #include "support/progress.h"
+#include "tabulate/aligned_vector.h"
 #include "tabulate/lobe_lanes.h"
 
 namespace clothbrdf {
@@ -17,8 +16,8 @@ template <class T>
 struct WeightTable {
   std::size_t lanes = 0;  ///< padded with weights of 0 to a multiple of kLanePadding
   std::size_t channels = 0;
-  int piece_bits = 0;                           ///< 2^piece_bits pieces an octave
-  hwy::AlignedFreeUniquePtr<T[]> coefficients;  ///< [piece][channel][power][lane]
+  int piece_bits = 0;             ///< 2^piece_bits pieces an octave
+  AlignedVector<T> coefficients;  ///< [piece][channel][power][lane]
 
   std::size_t row_size() const;  ///< values of a piece
 };
@@ -26,6 +25,9 @@ struct WeightTable {
 /// y = cos_theta_d + 2^kFirstOctave lies in the octaves that start at 2^kFirstOctave ... 2^0.
 inline constexpr int kFirstOctave = -8;
 inline constexpr double kWeightShift = 0x1p-8;
+
+/// Below this cos_theta_d errors are relative to the value at it.
+inline constexpr double kLeastCosine = 0x1p-12;
 
 /// Lanes of a vector register of 512 bits: narrower ones take several steps.
 template <class T>
@@ -35,9 +37,10 @@ inline constexpr std::size_t kLanePadding = 64 / sizeof(T);
 template <class T>
 inline constexpr int kWeightDegree = sizeof(T) == sizeof(float) ? 3 : 9;
 
-/// With `error` the largest difference of f that interpolation makes, relative, over all pieces and
-/// half vectors of every tilt. Empty (no lanes) where no such table reaches the tolerance: where
-/// weights jump at grazing incidence, as with a refractive index near 1.
+/// The table whose interpolation changes f by less than the tolerance, relative, as measured in all
+/// pieces and at half vectors of every tilt (below kLeastCosine relative to f there). Empty (no
+/// lanes) where none does: where weights jump at grazing incidence, as with a refractive index
+/// near 1.
 template <class T>
 WeightTable<T> weight_table(const LobeLanes& lanes, double tolerance, Workers workers);
 

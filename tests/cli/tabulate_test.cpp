@@ -194,9 +194,9 @@ TEST_CASE("eval and an EXR table hold the same values at the nodes") {
   REQUIRE(expected.size() == cells.size());
   for (std::size_t i = 0; i < cells.size(); ++i) {
     for (std::size_t c = 0; c < 3; ++c) {
-      // The stored value is the nearest float; the kernel of grids may differ in the last bits.
+      // For files of floats in/out points are evaluated in floats.
       CAPTURE(cells[i], c);
-      CHECK_THAT(table.value(cells[i], c), Catch::Matchers::WithinRel(expected[i][c], 1e-7));
+      CHECK_THAT(table.value(cells[i], c), Catch::Matchers::WithinRel(expected[i][c], 5e-6));
     }
   }
 }

@@ -16,6 +16,9 @@ namespace {
 // Vectors from the grid's node to the model's exact input lose 2 eps / (axis * cos_theta_d); sums
 // over lobes in another order a few eps.
 constexpr double kSameToRounding = 2e-13;
+// Of in/out points, which are evaluated in batches: what these promise at axes of 0.1 and more,
+// whose condition number stays below 10 / cos_theta_d.
+constexpr double kSameInBatches = 1e-12;
 
 double relative_error(double value, double exact) {
   return exact == 0 ? std::abs(value) : std::abs(value / exact - 1);
@@ -45,6 +48,7 @@ TEST_CASE("point values are those of the model at the nodes, component by compon
   const std::uint64_t seed = seed_from_environment();
   RandomInputs random(seed);
   double worst = 0;
+  double worst_in_batches = 0;
   int compared = 0;
   for (int n = 0; n < 12; ++n) {
     const Reflectance reflectance = n % 2 == 0 ? Reflectance::kMicrofacet : Reflectance::kPaper;
@@ -63,9 +67,11 @@ TEST_CASE("point values are those of the model at the nodes, component by compon
           // A node on the horizon may fall on either side of it.
           if (std::min(std::abs(d.wi[2]), std::abs(d.wo[2])) < 1e-12) continue;
           const double error = relative_error(table.value(cell, c), exact);
-          worst = std::max(worst, error);
+          const bool in_batches = grid.kind == GridKind::kInOut;
+          double& largest = in_batches ? worst_in_batches : worst;
+          largest = std::max(largest, error);
           ++compared;
-          if (error > kSameToRounding) {
+          if (error > (in_batches ? kSameInBatches : kSameToRounding)) {
             INFO(grid.description()
                  << " cell " << cell << " channel " << full_name(table.spec().channels[c]));
             CHECK(table.value(cell, c) == exact);
@@ -74,9 +80,10 @@ TEST_CASE("point values are those of the model at the nodes, component by compon
       }
     }
   }
-  std::cout << "point values against the model: worst relative error " << worst << " of "
-            << compared << " (seed " << seed << ")\n";
+  std::cout << "point values against the model: worst relative error " << worst << ", in/out "
+            << worst_in_batches << ", of " << compared << " (seed " << seed << ")\n";
   CHECK(worst <= kSameToRounding);
+  CHECK(worst_in_batches <= kSameInBatches);
 }
 
 TEST_CASE("a grid without phi_h holds the mean over phi_h") {
@@ -103,7 +110,10 @@ TEST_CASE("a grid without phi_h holds the mean over phi_h") {
 TEST_CASE("the components' sum equals the total to rounding, whichever are on") {
   RandomInputs random(seed_from_environment());
   const Material material = random_material(random, Reflectance::kMicrofacet);
+  double worst_in_out = 0;
   for (const Grid& grid : {halfdiff3d(9, 8, 10), halfdiff4d(5, 4, 6, 8), inout(4, 6, 4, 6)}) {
+    // In/out points interpolate their weights, to 1e-12, and not in the same pieces for all parts.
+    const double rounding = grid.kind == GridKind::kInOut ? 1e-12 : 4e-16;
     std::vector<Table> tables;
     for (const Effects& effects :
          {Effects{}, Effects{true, false, false}, Effects{false, true, false},
@@ -112,11 +122,17 @@ TEST_CASE("the components' sum equals the total to rounding, whichever are on") 
     }
     for (std::size_t cell = 0; cell < grid.cell_count(); ++cell) {
       const double total = tables[0].value(cell, 1);
-      CHECK(std::abs(tables[1].value(cell, 1) + tables[2].value(cell, 1) +
-                     tables[3].value(cell, 1) - total) <= 4e-16 * total);
-      CHECK(std::abs(tables[4].value(cell, 1) + tables[3].value(cell, 1) - total) <= 4e-16 * total);
+      const double all =
+          tables[1].value(cell, 1) + tables[2].value(cell, 1) + tables[3].value(cell, 1);
+      const double two = tables[4].value(cell, 1) + tables[3].value(cell, 1);
+      CHECK(std::abs(all - total) <= rounding * total);
+      CHECK(std::abs(two - total) <= rounding * total);
+      if (grid.kind == GridKind::kInOut && total > 0) {
+        worst_in_out = std::max(worst_in_out, std::abs(all / total - 1));
+      }
     }
   }
+  std::cout << "in/out components against their total: worst " << worst_in_out << '\n';
 }
 
 TEST_CASE("a non-reciprocal table that stops at 180 degrees holds the mean of both orders") {
