@@ -34,7 +34,7 @@ struct Block {
 
 /// What the lanes of kBlock pairs share: lanes over pairs.
 template <class T>
-void Prepare(const BatchPlan<T>& plan, const DirectionArrays<T>& in, Block<T>& block) {
+void prepare(const BatchPlan<T>& plan, const DirectionArrays<T>& in, Block<T>& block) {
   const hn::ScalableTag<T> d;
   const hn::RebindToUnsigned<decltype(d)> du;
   const std::size_t n = hn::Lanes(d);
@@ -93,7 +93,7 @@ void Prepare(const BatchPlan<T>& plan, const DirectionArrays<T>& in, Block<T>& b
 /// The sums over lanes for `count` pairs and kChannels channels from `channel` on: lanes over
 /// lobes.
 template <std::size_t kChannels, class T>
-void Sum(const BatchPlan<T>& plan, std::size_t channel, std::size_t count, Block<T>& block) {
+void sum_lanes(const BatchPlan<T>& plan, std::size_t channel, std::size_t count, Block<T>& block) {
   // Of 256 bits at most: adding up the lanes of wider ones costs more than they save.
   const hn::CappedTag<T, 32 / sizeof(T)> d;
   const std::size_t n = hn::Lanes(d);
@@ -133,7 +133,7 @@ void Sum(const BatchPlan<T>& plan, std::size_t channel, std::size_t count, Block
 
 /// What is left to do for one channel: lanes over pairs.
 template <class T>
-void Finish(const Block<T>& block, const T* sum, T constant, std::size_t count, T* values) {
+void finish(const Block<T>& block, const T* sum, T constant, std::size_t count, T* values) {
   const hn::ScalableTag<T> d;
   const std::size_t n = hn::Lanes(d);
   const auto value = [&](std::size_t p) {
@@ -172,34 +172,34 @@ class Window {
 };
 
 template <class T>
-void Run(const BatchPlan<T>& plan, const DirectionArrays<T>& in, T* const* values) {
+void run(const BatchPlan<T>& plan, const DirectionArrays<T>& in, T* const* values) {
   Block<T> block{};
   Window<T> window;
   for (std::size_t first = 0; first < in.count; first += kBlock) {
     const DirectionArrays<T> now = window.at(in, first);
-    Prepare(plan, now, block);
+    prepare(plan, now, block);
     std::size_t channel = 0;
     while (channel < plan.channels) {
       const bool three = channel + 3 <= plan.channels;
       if (three) {
-        Sum<3>(plan, channel, now.count, block);
+        sum_lanes<3>(plan, channel, now.count, block);
       } else {
-        Sum<1>(plan, channel, now.count, block);
+        sum_lanes<1>(plan, channel, now.count, block);
       }
       for (std::size_t c = 0; c < (three ? 3U : 1U); ++c, ++channel) {
-        Finish(block, block.sum[c], plan.constants[channel], now.count, values[channel] + first);
+        finish(block, block.sum[c], plan.constants[channel], now.count, values[channel] + first);
       }
     }
   }
 }
 
-void RunFloat(const BatchPlan<float>& plan, const DirectionArrays<float>& in,
-              float* const* values) {
-  Run(plan, in, values);
+void run_float(const BatchPlan<float>& plan, const DirectionArrays<float>& in,
+               float* const* values) {
+  run(plan, in, values);
 }
-void RunDouble(const BatchPlan<double>& plan, const DirectionArrays<double>& in,
-               double* const* values) {
-  Run(plan, in, values);
+void run_double(const BatchPlan<double>& plan, const DirectionArrays<double>& in,
+                double* const* values) {
+  run(plan, in, values);
 }
 
 }  // namespace
@@ -216,23 +216,23 @@ std::vector<BatchTarget> supported_targets() {
 #if HWY_TARGETS & HWY_AVX2
   if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
       __builtin_cpu_supports("bmi2")) {
-    targets.push_back({"AVX2", N_AVX2::RunFloat, N_AVX2::RunDouble});
+    targets.push_back({"AVX2", N_AVX2::run_float, N_AVX2::run_double});
   }
 #endif
 #if HWY_TARGETS & HWY_AVX3
   if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
       __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&
       __builtin_cpu_supports("avx512vl")) {
-    targets.push_back({"AVX-512", N_AVX3::RunFloat, N_AVX3::RunDouble});
+    targets.push_back({"AVX-512", N_AVX3::run_float, N_AVX3::run_double});
   }
 #endif
 #if HWY_TARGETS & HWY_SSE4
   if (__builtin_cpu_supports("sse4.2") && __builtin_cpu_supports("aes") &&
       __builtin_cpu_supports("pclmul")) {
-    targets.push_back({"SSE4", N_SSE4::RunFloat, N_SSE4::RunDouble});
+    targets.push_back({"SSE4", N_SSE4::run_float, N_SSE4::run_double});
   }
 #endif
-  targets.push_back({"baseline", HWY_STATIC_DISPATCH(RunFloat), HWY_STATIC_DISPATCH(RunDouble)});
+  targets.push_back({"baseline", HWY_STATIC_DISPATCH(run_float), HWY_STATIC_DISPATCH(run_double)});
   return targets;
 }
 
