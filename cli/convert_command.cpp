@@ -95,10 +95,11 @@ std::vector<std::string> what_is_lost(const Table& source, const Target& target)
   if (holds_components(spec) && !target.components) {
     lost.emplace_back("the components: totals only");
   }
-  const double rounding = target.format->precision(target.write).relative;
+  const auto [rounding, step] = target.format->precision(target.write);
   if (rounding > source.precision().relative) {
     std::ostringstream text;
-    text << "digits: rounded by up to " << std::setprecision(2) << rounding << " of the value";
+    text << "digits: rounded by up to " << std::setprecision(2) << rounding
+         << " of the value, or by " << step / 2 << " where that is more";
     lost.push_back(text.str());
   }
   if (!target.format->keeps_description && !spec.provenance.program.empty()) {
@@ -116,6 +117,14 @@ ChannelDifference worst_of(const Comparison& comparison) {
     worst.max = std::max(worst.max, d.max);
   }
   return worst;
+}
+
+std::size_t not_measured(const Table& table) {
+  std::size_t count = 0;
+  for (std::size_t cell = 0; cell < table.spec().cell_count(); ++cell) {
+    count += !table.valid(cell) && table.spec().grid().node_above_horizon(cell) ? 1U : 0U;
+  }
+  return count;
 }
 
 void report(const ConvertOptions& options, const Target& target, const Table& table,
@@ -154,12 +163,17 @@ void convert(const ConvertOptions& options) {
   const Workers workers{threads, &bar.progress()};
   const Target target = choose_target(options, table.spec(), workers);
   AtomicFile file(options.out);
-  const std::vector<std::string> lost = what_is_lost(table, target);
+  std::vector<std::string> lost = what_is_lost(table, target);
   if (holds_components(table.spec()) && !target.components) table = without_components(table);
   std::optional<ChannelDifference> error;
   if (target.grid != table.spec().grid()) {
     Table resampled = resample(table, target.grid, workers);
     error = worst_of(compare(table, resampled, workers));
+    if (const std::size_t count = not_measured(resampled); count > 0) {
+      lost.push_back(with_commas(count) +
+                     " cells, which have no cell to be interpolated from: they hold " +
+                     (table.spec().provenance.material ? "0" : "-1, the mark of such cells"));
+    }
     table = std::move(resampled);
   }
   bar.progress().begin(options.out, table.spec().cell_count(), "cells");

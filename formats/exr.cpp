@@ -188,7 +188,7 @@ void write_exr(const Producer& producer, AtomicFile& file, const WriteOptions& o
         write_lines<float>(producer, out, type, name, options.workers);
       }
     }
-    stream.flush();
+    stream.finish();
   } catch (const Iex::BaseExc& error) {
     throw WorkError(name + ": cannot write: " + error.what());
   }

@@ -8,13 +8,14 @@
 #include <vector>
 
 #include "support/atomic_file.h"
+#include "support/errors.h"
 
 namespace clothbrdf {
 
 // Internal to formats/.
 
 /// OpenEXR's own writer, into our file. It writes in small pieces, which are gathered here: call
-/// flush() once it is done.
+/// finish() once it is done.
 class AtomicOStream final : public Imf::OStream {
  public:
   explicit AtomicOStream(AtomicFile& file) : Imf::OStream(file.name().c_str()), file_(file) {
@@ -24,8 +25,7 @@ class AtomicOStream final : public Imf::OStream {
     const auto piece = std::as_bytes(std::span(bytes, static_cast<std::size_t>(count)));
     if (buffer_.size() + piece.size() > kBufferBytes) flush();
     if (piece.size() > kBufferBytes) {
-      file_.write_at(start_, piece);
-      start_ += piece.size();
+      put(piece);
     } else {
       buffer_.insert(buffer_.end(), piece.begin(), piece.end());
     }
@@ -36,18 +36,30 @@ class AtomicOStream final : public Imf::OStream {
     start_ = position;
   }
 
-  /// Throws WorkError, and keeps what is not written.
-  void flush() {
-    file_.write_at(start_, buffer_);
-    start_ += buffer_.size();
-    buffer_.clear();
+  /// The last call. Throws WorkError, also where an earlier write failed: OpenEXR's destructor
+  /// keeps quiet about that.
+  void finish() {
+    if (failed_) throw WorkError(file_.name().string() + ": cannot write: an earlier write failed");
+    flush();
   }
 
  private:
+  void flush() {
+    put(buffer_);
+    buffer_.clear();
+  }
+  void put(std::span<const std::byte> bytes) {
+    failed_ = true;
+    file_.write_at(start_, bytes);
+    failed_ = false;
+    start_ += bytes.size();
+  }
+
   static constexpr std::size_t kBufferBytes = std::size_t{1} << 20U;
 
   AtomicFile& file_;
   std::uint64_t start_ = 0;  // of the buffer, in the file
+  bool failed_ = false;
   std::vector<std::byte> buffer_;
 };
 

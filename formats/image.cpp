@@ -76,7 +76,7 @@ void write_exr_picture(const Image& image, AtomicFile& file) {
       out.setFrameBuffer(frame);
       out.writePixels(image.height);
     }
-    stream.flush();
+    stream.finish();
   } catch (const Iex::BaseExc& error) {
     throw WorkError(file.name().string() + ": cannot write: " + error.what());
   }

@@ -40,7 +40,7 @@ struct TableCheck {
   std::size_t below_horizon = 0;  ///< wholly
   std::size_t masked = 0;         ///< above the horizon, marked as not valid
   Flaw not_finite;
-  Flaw negative;        ///< in cells that reach above the horizon
+  Flaw negative;        ///< in cells above the horizon: by their node or, of averages, by any part
   Flaw below_not_zero;  ///< in cells wholly below it, other than negative marks: a note
   ReciprocityCheck reciprocity;
   std::vector<Albedo> albedo;  ///< by theta_i

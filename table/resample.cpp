@@ -26,10 +26,10 @@ class Mean {
     for (std::size_t c = 0; c < sum_.size(); ++c) sum_[c] += sample[c];
     ++count_;
   }
-  /// False, and kNotMeasured, where nothing was added.
+  /// False where nothing was added.
   bool take(std::vector<double>& values) {
     const bool any = count_ > 0;
-    values.assign(sum_.size(), kNotMeasured);
+    values.assign(sum_.size(), 0.0);
     for (std::size_t c = 0; any && c < sum_.size(); ++c) values[c] = sum_[c] / count_;
     std::fill(sum_.begin(), sum_.end(), 0.0);
     count_ = 0;
@@ -51,6 +51,8 @@ Table tabulated(const Table& source, const Grid& grid, const Workers& workers, c
   spec.samples = grid;
   spec.cells = {};  // whatever the source's cells were: values are taken at nodes
   const std::size_t columns = spec.column_count();
+  // A computed table has no cells that were not measured.
+  const double mark = spec.provenance.material ? 0 : kNotMeasured;
   std::vector<double> values(spec.cell_count() * spec.channels.size());
   std::vector<std::uint8_t> valid(spec.cell_count());
   if (workers.progress != nullptr) workers.progress->begin(what, spec.cell_count(), "cells");
@@ -62,6 +64,7 @@ Table tabulated(const Table& source, const Grid& grid, const Workers& workers, c
         const std::size_t cell = row * columns + column;
         if (!grid.node_above_horizon(cell)) continue;
         valid[cell] = function(cell, sample) ? 1 : 0;
+        if (valid[cell] == 0) sample.assign(sample.size(), mark);
         for (std::size_t c = 0; c < sample.size(); ++c) {
           values[row * spec.row_values() + c * columns + column] = sample[c];
         }
@@ -115,18 +118,15 @@ Table resample(const Table& source, const Grid& grid, const Workers& workers) {
   if (isotropic) mean = isotropic_mean(source, workers);
   const Table& table = mean ? *mean : source;
   if (table.spec().grid() == grid) return table;
-  const bool both_orders = averages_orders(from, grid);
+  const std::optional<Material>& material = source.spec().provenance.material;
+  const bool reciprocal = material && material->reflectance == Reflectance::kMicrofacet;
+  const bool both_orders = tells_orders_apart(from) && (reciprocal || averages_orders(from, grid));
   const std::size_t channels = source.spec().channels.size();
   return tabulated(source, grid, workers, "resampling", [&]() -> CellFunction {
     return [&, both = Mean(channels), sample = std::vector<double>(channels)](
                std::size_t cell, std::vector<double>& values) mutable {
       const auto add = [&](const Vector3<double>& wi, const Vector3<double>& wo) {
-        // Seen from the light: the one phi_i of an isotropic in/out table is 0.
-        const double across = std::hypot(wi[0], wi[1]);
-        const SinCos<double> back = isotropic && across > 0
-                                        ? SinCos<double>{-wi[1] / across, wi[0] / across}
-                                        : SinCos<double>{0, 1};
-        if (table.interpolate({turned(wi, back), turned(wo, back)}, sample)) both.add(sample);
+        if (table.interpolate({wi, wo}, sample)) both.add(sample);
       };
       const Directions d = grid.directions(cell);
       add(d.wi, d.wo);

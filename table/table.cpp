@@ -54,7 +54,9 @@ bool Table::interpolate(const Directions& directions, std::span<double> values) 
   std::fill(values.begin(), values.end(), 0.0);
   if (!directions.above_horizon()) return false;
   const std::vector<Axis>& axes = spec_.grid().axes;
-  const std::array<double, 4> angle = spec_.grid().angles(directions.wi, directions.wo);
+  std::array<double, 4> angle = spec_.grid().angles(directions.wi, directions.wo);
+  // One azimuth of the light stands for any: the eye's is seen from it.
+  if (spec_.grid().kind == GridKind::kInOut && axes[1].size == 1) angle[3] -= angle[1];
   std::array<std::array<std::size_t, 2>, 4> index{};  // the nodes on both sides
   std::array<double, 4> upper_share{};
   for (std::size_t a = 0; a < axes.size(); ++a) {

@@ -32,6 +32,7 @@ class Table final : public Producer {
 
   /// f_r of each channel between the nodes of a grid: linear in each axis's own coordinate.
   /// Periodic axes wrap, the others are continued as constants beyond their first and last node.
+  /// An only phi_i stands for any, with phi_o counted from it.
   /// Cells that are not valid or not finite are left out, and the weights of the others scaled up.
   /// False, and values of 0, on or below the horizon and where all cells around are left out.
   bool interpolate(const Directions& directions, std::span<double> values) const;

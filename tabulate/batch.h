@@ -29,7 +29,7 @@ struct DirectionArrays {
 template <class T>
 class BatchEvaluator {
  public:
-  /// Prepares tables, some milliseconds. Keeps a reference to the model.
+  /// Prepares tables: some milliseconds for three channels. Keeps a reference to the model.
   BatchEvaluator(const ClothModel<double>& model, std::vector<Channel> channels, Workers workers);
 
   /// For tests and benchmarks: the kernel to use, an index of batch_targets().

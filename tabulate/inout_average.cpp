@@ -11,6 +11,7 @@ namespace clothbrdf {
 namespace {
 
 constexpr double kRadian = std::numbers::pi / 180;
+
 }  // namespace
 
 /// Arrays for the pairs of one call.

@@ -11,7 +11,8 @@ namespace clothbrdf {
 /// How exactly a kernel works.
 enum class Precision {
   kDouble,  ///< as the model, to rounding
-  kSingle,  ///< for files of 32-bit floats: where directions are arbitrary (in/out points), to 5e-6
+  kSingle,  ///< for files of 32-bit floats: in/out points are evaluated in floats (batch.h), unless
+            ///< lobes are so narrow that these would not do
 };
 
 /// Values of whole rows of one kind of grid: the grid's part of a Producer.

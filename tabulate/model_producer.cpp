@@ -1,5 +1,6 @@
 #include "tabulate/model_producer.h"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -14,6 +15,17 @@
 namespace clothbrdf {
 namespace {
 
+// Below, lobes magnify the rounding of directions in floats beyond the accuracy of a file.
+constexpr double kNarrow = 0.01;
+
+double narrowest_axis(const ClothModel<double>& model) {
+  double narrowest = 1;
+  for (const PreparedYarn<double>& y : model.yarns()) {
+    for (const double axis : y.yarn.lobe_axes) narrowest = std::min(narrowest, axis);
+  }
+  return narrowest;
+}
+
 class ModelProducer final : public Producer {
  public:
   ModelProducer(const TableSpec& spec, Workers workers, Precision precision)
@@ -23,7 +35,9 @@ class ModelProducer final : public Producer {
       if (spec_.cells.average) {
         kernel_ = std::make_unique<InOutAverage>(spec_, model_, workers);
       } else {
-        kernel_ = std::make_unique<InOutPoints>(spec_, model_, precision, workers);
+        const bool single = precision == Precision::kSingle && narrowest_axis(model_) >= kNarrow;
+        kernel_ = std::make_unique<InOutPoints>(
+            spec_, model_, single ? Precision::kSingle : Precision::kDouble, workers);
       }
     } else if (spec_.cells.average) {
       kernel_ = std::make_unique<HalfDifferenceAverage>(spec_, model_, workers);

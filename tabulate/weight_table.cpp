@@ -129,6 +129,7 @@ double octave_error(const Octaves& octaves, const LobeLanes& lanes, const Measur
   std::vector<double> errors(kOctaves * kBetween.size());
   with_threads(workers.threads, [&] {
     tbb::parallel_for(std::size_t{0}, errors.size(), [&](std::size_t k) {
+      workers.check();
       const double y =
           Octaves::place(static_cast<int>(k / kBetween.size()), kBetween[k % kBetween.size()]);
       Row exact(lanes.size() * lanes.channels().size());
@@ -161,6 +162,15 @@ std::array<std::array<double, degree + 1>, degree + 1> power_matrix(
   return matrix;
 }
 
+// Of a table; hundreds of channels would fill the memory.
+constexpr double kMostBytes = 256e6;
+
+template <class T>
+double table_bytes(const LobeLanes& lanes, int bits) {
+  return std::ldexp(kOctaves, bits) * static_cast<double>(lanes.size() * lanes.channels().size()) *
+         (kWeightDegree<T> + 1) * sizeof(T);
+}
+
 template <class T>
 class Pieces {
  public:
@@ -181,6 +191,7 @@ class Pieces {
     table.coefficients.assign(pieces * table.row_size(), T(0));
     std::vector<double> errors(pieces);
     const auto make = [&](std::size_t piece) {
+      workers.check();
       const int octave = static_cast<int>(piece >> bits);
       const double width = std::ldexp(1.0, kFirstOctave + octave - bits);
       const double low = std::ldexp(1.0, kFirstOctave + octave) +
@@ -249,6 +260,7 @@ WeightTable<T> weight_table(const LobeLanes& lanes, double tolerance, Workers wo
     const double octave_share = octave_error(octaves, lanes, measure, workers);
     if (octave_share > tolerance / 2) continue;
     for (int bits = 3; bits <= kMostPieceBits; ++bits) {
+      if (table_bytes<T>(lanes, bits) > kMostBytes) return {};
       Pieces<T> pieces(octaves, lanes, measure, bits, workers);
       if (pieces.error + octave_share <= tolerance) return std::move(pieces.table);
     }

@@ -39,8 +39,9 @@ inline constexpr int kWeightDegree = sizeof(T) == sizeof(float) ? 3 : 9;
 
 /// The table whose interpolation changes f by less than the tolerance, relative, as measured in all
 /// pieces and at half vectors of every tilt (below kLeastCosine relative to f there). Empty (no
-/// lanes) where none does: where weights jump at grazing incidence, as with a refractive index
-/// near 1.
+/// lanes) where none does: where weights jump at grazing incidence (a refractive index near 1 with
+/// absorption), where a channel is next to black (a dozen absorption lengths), or where channels
+/// are so many that it would fill the memory.
 template <class T>
 WeightTable<T> weight_table(const LobeLanes& lanes, double tolerance, Workers workers);
 
