@@ -1,7 +1,9 @@
 #include "tabulate/batch_kernel.h"
 
-// Compiled once for each kind of vector registers; more would hardly be faster.
-#define HWY_DISABLED_TARGETS (HWY_AVX3_DL | HWY_SSSE3)
+// Compiled once for each kind of vector registers. Not for these: the first two would hardly be
+// faster, and the others have no size that arrays need.
+#define HWY_DISABLED_TARGETS \
+  (HWY_AVX3_DL | HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "tabulate/batch_kernel.cpp"
 #include <hwy/foreach_target.h>
