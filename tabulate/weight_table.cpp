@@ -255,7 +255,7 @@ std::size_t WeightTable<T>::row_size() const {
 template <class T>
 WeightTable<T> weight_table(const LobeLanes& lanes, double tolerance, Workers workers) {
   const Measure measure(lanes);
-  for (const std::size_t nodes : {12U, 20U, 32U}) {
+  for (const std::size_t nodes : {12U, 20U, 32U, 48U}) {
     const Octaves octaves(lanes, nodes, workers);
     const double octave_share = octave_error(octaves, lanes, measure, workers);
     if (octave_share > tolerance / 2) continue;
