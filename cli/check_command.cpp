@@ -11,7 +11,6 @@
 #include "cli/options.h"
 #include "cli/progress_bar.h"
 #include "support/errors.h"
-#include "support/threads.h"
 #include "table/check.h"
 
 namespace clothbrdf {
@@ -178,7 +177,7 @@ void print_json(const CheckOptions& options, const TableSpec& spec, const TableC
 }
 
 void check(const CheckOptions& options) {
-  const int threads = options.threads ? parse_threads(*options.threads) : default_threads();
+  const int threads = threads_of(options.threads);
   const Table table = read_table(options.file);
   ProgressBar bar;
   const TableCheck result = check_table(table, {threads, &bar.progress()});
@@ -207,11 +206,7 @@ void add_check_command(CLI::App& program) {
   command->add_option("TABLE", options->file, "table (" + table_endings() + ")")
       ->required()
       ->type_name("FILE");
-  command
-      ->add_option_function<std::string>(
-          "--threads", [options](const std::string& text) { options->threads = text; },
-          "1 to 1024; all processors where left out")
-      ->type_name("N");
+  add_threads_option(*command, options->threads);
   command->add_flag("--json", options->json, "as one JSON object");
   command->callback([options] { check(*options); });
 }

@@ -9,7 +9,6 @@
 #include "cli/options.h"
 #include "cli/progress_bar.h"
 #include "support/errors.h"
-#include "support/threads.h"
 #include "table/compare.h"
 
 namespace clothbrdf {
@@ -62,7 +61,7 @@ void print_json(const CompareOptions& options, const Table& a, const Comparison&
 }
 
 void compare_tables(const CompareOptions& options) {
-  const int threads = options.threads ? parse_threads(*options.threads) : default_threads();
+  const int threads = threads_of(options.threads);
   const Table a = read_table(options.a);
   const Table b = read_table(options.b);
   ProgressBar bar;
@@ -96,11 +95,7 @@ void add_compare_command(CLI::App& program) {
       ->required()
       ->type_name("FILE");
   command->add_option("B", options->b, "the other table")->required()->type_name("FILE");
-  command
-      ->add_option_function<std::string>(
-          "--threads", [options](const std::string& text) { options->threads = text; },
-          "1 to 1024; all processors where left out")
-      ->type_name("N");
+  add_threads_option(*command, options->threads);
   command->add_flag("--json", options->json, "as one JSON object");
   command->callback([options] { compare_tables(*options); });
 }

@@ -15,7 +15,6 @@
 #include "cli/progress_bar.h"
 #include "formats/format.h"
 #include "support/errors.h"
-#include "support/threads.h"
 #include "table/compare.h"
 #include "table/resample.h"
 
@@ -156,7 +155,7 @@ void report(const ConvertOptions& options, const Target& target, const Table& ta
 }
 
 void convert(const ConvertOptions& options) {
-  const int threads = options.threads ? parse_threads(*options.threads) : default_threads();
+  const int threads = threads_of(options.threads);
   format_for(options.out);  // before a large table is read
   Table table = read_table(options.in);
   ProgressBar bar;
@@ -199,19 +198,12 @@ void add_convert_command(CLI::App& program) {
   command->add_option("OUT", options->out, "table to write; the format follows the ending")
       ->required()
       ->type_name("FILE");
-  const auto optional = [&](const char* name, std::optional<std::string>& value, const char* type,
-                            const char* help) {
-    command
-        ->add_option_function<std::string>(
-            name, [options, &value](const std::string& text) { value = text; }, help)
-        ->type_name(type);
-  };
-  optional("--grid", options->grid, "GRID",
-           "halfdiff3d[:THxTDxPD], halfdiff4d[:THxPHxTDxPD] or inout[:TIxPIxTOxPO]");
+  add_text_option(*command, "--grid", options->grid, "GRID",
+                  "halfdiff3d[:THxTDxPD], halfdiff4d[:THxPHxTDxPD] or inout[:TIxPIxTOxPO]");
   command->add_flag("--half", options->half,
                     "16-bit floats (EXR); a value that does not fit is an error");
   command->add_flag("--compress", options->compress, "compress without loss (EXR)");
-  optional("--threads", options->threads, "N", "1 to 1024; all processors where left out");
+  add_threads_option(*command, options->threads);
   command->add_flag("--json", options->json, "say what was written as one JSON object");
   command->callback([options] { convert(*options); });
 }

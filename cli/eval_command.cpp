@@ -148,11 +148,8 @@ void add_eval_command(CLI::App& program) {
                    "'#' starts a "
                    "comment line; - is standard input, the default")
       ->type_name("FILE");
-  command
-      ->add_option_function<std::string>(
-          "--effects", [options](const std::string& list) { options->effects = list; },
-          "only these components, joined by ',': specular, internal, diffuse")
-      ->type_name("LIST");
+  add_text_option(*command, "--effects", options->effects, "LIST",
+                  "only these components, joined by ',': specular, internal, diffuse");
   command->add_flag("--json")->description(
       "the output is always JSON; accepted so that all commands take it");
   command->callback([options] { eval(*options); });

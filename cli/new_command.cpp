@@ -7,6 +7,7 @@
 #include <string>
 
 #include "cli/commands.h"
+#include "cli/options.h"
 #include "formats/colour.h"
 #include "formats/material_json.h"
 #include "formats/presets.h"
@@ -154,23 +155,15 @@ void add_new_command(CLI::App& program) {
                              "Writes a material from a preset and colours; without a preset, lists "
                              "the presets.\n"
                              "Example: clothbrdf new silk --colour '#b03060' -o rose.json");
-  const auto text_option = [&](const char* name, std::optional<std::string>& value,
-                               const char* type, const std::string& help) {
-    // Kept apart from a value that is empty.
-    command
-        ->add_option_function<std::string>(
-            name, [options, &value](const std::string& text) { value = text; }, help)
-        ->type_name(type);
-  };
-  text_option("PRESET", options->preset, "NAME", "one of: " + known_presets());
-  text_option("-o,--output", options->output, "MATERIAL",
-              "material file to write (.json); its name is the material's");
-  text_option("--colour", options->colour, "HEX",
-              std::string("diffuse colour of both yarns, sRGB: ") + kColourAllowed);
-  text_option("--warp-colour", options->warp_colour, "HEX",
-              "of the warp alone; goes before --colour");
-  text_option("--weft-colour", options->weft_colour, "HEX",
-              "of the weft alone; goes before --colour");
+  add_text_option(*command, "PRESET", options->preset, "NAME", "one of: " + known_presets());
+  add_text_option(*command, "-o,--output", options->output, "MATERIAL",
+                  "material file to write (.json); its name is the material's");
+  add_text_option(*command, "--colour", options->colour, "HEX",
+                  std::string("diffuse colour of both yarns, sRGB: ") + kColourAllowed);
+  add_text_option(*command, "--warp-colour", options->warp_colour, "HEX",
+                  "of the warp alone; goes before --colour");
+  add_text_option(*command, "--weft-colour", options->weft_colour, "HEX",
+                  "of the weft alone; goes before --colour");
   command->add_flag("--json", options->json,
                     "say what was written as a JSON object, or the presets as a JSON array");
   command->callback([options] { make_material(*options); });

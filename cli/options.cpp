@@ -6,6 +6,7 @@
 
 #include "model/parameters.h"
 #include "support/errors.h"
+#include "support/threads.h"
 
 namespace clothbrdf {
 
@@ -67,6 +68,22 @@ double parse_number(const std::string& option, const std::string& text, const Nu
 int parse_threads(const std::string& text) {
   constexpr double kMost = 1024;
   return static_cast<int>(parse_number("--threads", text, {1, kMost, true}));
+}
+
+void add_text_option(CLI::App& command, const std::string& name, std::optional<std::string>& value,
+                     const std::string& type, const std::string& help) {
+  command
+      .add_option_function<std::string>(
+          name, [&value](const std::string& text) { value = text; }, help)
+      ->type_name(type);
+}
+
+void add_threads_option(CLI::App& command, std::optional<std::string>& value) {
+  add_text_option(command, "--threads", value, "N", "1 to 1024; all processors where left out");
+}
+
+int threads_of(const std::optional<std::string>& value) {
+  return value ? parse_threads(*value) : default_threads();
 }
 
 SheetDirection parse_direction(const std::string& option, const std::string& text) {

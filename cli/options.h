@@ -1,7 +1,9 @@
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "formats/format.h"
@@ -22,6 +24,15 @@ CellRule parse_cells(const std::string& text);
 
 /// 1 to 1024.
 int parse_threads(const std::string& text);
+
+/// Adds an option whose text is kept apart from none at all, even if it is empty. `value` must live
+/// as long as the command.
+void add_text_option(CLI::App& command, const std::string& name, std::optional<std::string>& value,
+                     const std::string& type, const std::string& help);
+
+/// --threads, and what it stands for: all processors where it is left out.
+void add_threads_option(CLI::App& command, std::optional<std::string>& value);
+int threads_of(const std::optional<std::string>& value);
 
 /// A number of an option, from lowest to highest.
 struct NumberRange {

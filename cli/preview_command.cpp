@@ -19,7 +19,6 @@
 #include "preview/panels.h"
 #include "preview/sheet.h"
 #include "support/errors.h"
-#include "support/threads.h"
 
 namespace clothbrdf {
 namespace {
@@ -150,7 +149,7 @@ void preview(const PreviewOptions& options) {
   sheet.exposure = parse_number("--exposure", options.exposure, {-30, 30, false});
   constexpr double kLobesTheta = 30;
   const double light_theta = options.light ? sheet.light.theta_deg : kLobesTheta;
-  const int threads = options.threads ? parse_threads(*options.threads) : default_threads();
+  const int threads = threads_of(options.threads);
   check_outputs(options);
   ProgressBar bar;
   const Workers workers{threads, &bar.progress()};
@@ -204,26 +203,19 @@ void add_preview_command(CLI::App& program) {
                           const char* help) {
     command->add_option(name, value, help)->type_name(type);
   };
-  const auto optional = [&](const char* name, std::optional<std::string>& value, const char* type,
-                            const char* help) {
-    command
-        ->add_option_function<std::string>(
-            name, [options, &value](const std::string& text) { value = text; }, help)
-        ->type_name(type);
-  };
   option("--show", options->show, "WHAT",
          "sheet (the default), weave (also turned by 45 degrees), components (specular, internal, "
          "diffuse), lobes (polar, in two planes) or all");
-  optional(
-      "--light", options->light, "THETA,PHI",
+  add_text_option(
+      *command, "--light", options->light, "THETA,PHI",
       "direction to the light, degrees; 0,0 (straight above) where left out; lobes: only THETA, "
       "30 where left out");
-  optional("--eye", options->eye, "THETA,PHI",
-           "direction to the eye, degrees; 0,0 (straight above) where left out");
+  add_text_option(*command, "--eye", options->eye, "THETA,PHI",
+                  "direction to the eye, degrees; 0,0 (straight above) where left out");
   option("--size", options->size, "PIXELS", "edge of a panel, 16 to 4096; 256 where left out");
   option("--exposure", options->exposure, "STOPS",
          "brighter by 2^STOPS; at 0, the default, a white diffuse sheet facing the light is white");
-  optional("--threads", options->threads, "N", "1 to 1024; all processors where left out");
+  add_threads_option(*command, options->threads);
   command->add_flag("--json", options->json, "say what was written as one JSON object a line");
   command->callback([options] { preview(*options); });
 }

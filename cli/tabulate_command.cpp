@@ -18,7 +18,6 @@
 #include "formats/format.h"
 #include "formats/material_json.h"
 #include "support/errors.h"
-#include "support/threads.h"
 #include "tabulate/model_producer.h"
 
 namespace clothbrdf {
@@ -121,7 +120,7 @@ std::string what_stays(std::span<const Output> unwritten) {
 
 void tabulate(const TabulateOptions& options) {
   const Material material = read_material(options.material);
-  const int threads = options.threads ? parse_threads(*options.threads) : default_threads();
+  const int threads = threads_of(options.threads);
   std::vector<Output> outputs;
   for (const std::string& name : options.outputs) {
     if (std::any_of(outputs.begin(), outputs.end(),
@@ -173,17 +172,10 @@ void add_tabulate_command(CLI::App& program) {
       ->required()
       ->type_name("FILE")
       ->allow_extra_args(false);  // what follows the name may be the material
-  const auto text_option = [&](const char* name, std::optional<std::string>& value,
-                               const char* type, const char* help) {
-    // Kept apart from a value that is empty.
-    command
-        ->add_option_function<std::string>(
-            name, [options, &value](const std::string& text) { value = text; }, help)
-        ->type_name(type);
-  };
-  text_option("--grid", options->grid, "GRID",
-              "halfdiff3d[:THxTDxPD], halfdiff4d[:THxPHxTDxPD] or inout[:TIxPIxTOxPO]; each format "
-              "has its own default");
+  add_text_option(
+      *command, "--grid", options->grid, "GRID",
+      "halfdiff3d[:THxTDxPD], halfdiff4d[:THxPHxTDxPD] or inout[:TIxPIxTOxPO]; each format "
+      "has its own default");
   command
       ->add_option(
           "--cells", options->cells,
@@ -191,14 +183,14 @@ void add_tabulate_command(CLI::App& program) {
           "over the cell above the horizon, to the relative tolerance REL, 1e-3 where left "
           "out)")
       ->type_name("RULE");
-  text_option("--effects", options->effects, "LIST",
-              "only these components, joined by ',': specular, internal, diffuse");
+  add_text_option(*command, "--effects", options->effects, "LIST",
+                  "only these components, joined by ',': specular, internal, diffuse");
   command->add_flag("--components", options->components,
                     "also layers specular.*, internal.*, diffuse.* (EXR)");
   command->add_flag("--half", options->half,
                     "16-bit floats (EXR); a value that does not fit is an error");
   command->add_flag("--compress", options->compress, "compress without loss (EXR)");
-  text_option("--threads", options->threads, "N", "1 to 1024; all processors where left out");
+  add_threads_option(*command, options->threads);
   command->add_flag("--dry-run", options->dry_run,
                     "check everything, say what would be written, write nothing");
   command->add_flag("--json", options->json, "say what was written as one JSON object a line");

@@ -28,11 +28,10 @@ struct InOutAverage::Workspace {
 };
 
 InOutAverage::InOutAverage(const TableSpec& spec, const ClothModel<double>& model, Workers workers)
-    : spec_(spec), workers_(workers), evaluator_(model, spec.channels, workers) {
-  for (const PreparedYarn<double>& y : model.yarns()) {
-    for (const double axis : y.yarn.lobe_axes) narrowest_axis_ = std::min(narrowest_axis_, axis);
-  }
-}
+    : spec_(spec),
+      workers_(workers),
+      narrowest_axis_(narrowest_axis(model)),
+      evaluator_(model, spec.channels, workers) {}
 
 // f of all channels, times the sines of the measure.
 void InOutAverage::weighted(std::span<const Point4> points, Workspace& work,

@@ -24,7 +24,7 @@ class InOutAverage final : public Kernel {
 
   const TableSpec& spec_;
   Workers workers_;
-  double narrowest_axis_ = 1;
+  double narrowest_axis_;
   BatchEvaluator<double> evaluator_;
 };
 

@@ -1,6 +1,16 @@
 #include "tabulate/kernel.h"
 
+#include <algorithm>
+
 namespace clothbrdf {
+
+double narrowest_axis(const ClothModel<double>& model) {
+  double narrowest = 1;
+  for (const PreparedYarn<double>& y : model.yarns()) {
+    for (const double axis : y.yarn.lobe_axes) narrowest = std::min(narrowest, axis);
+  }
+  return narrowest;
+}
 
 double channel_value(const Components& f, const Channel& channel) {
   switch (channel.part) {

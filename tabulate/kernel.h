@@ -22,6 +22,9 @@ class Kernel {
   virtual void fill_rows(std::size_t first_row, std::span<double> values) const = 0;
 };
 
+/// The narrowest lobe axis of both yarns.
+double narrowest_axis(const ClothModel<double>& model);
+
 /// The value of a channel.
 double channel_value(const Components& f, const Channel& channel);
 

@@ -1,6 +1,5 @@
 #include "tabulate/model_producer.h"
 
-#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -17,14 +16,6 @@ namespace {
 
 // Below, lobes magnify the rounding of directions in floats beyond the accuracy of a file.
 constexpr double kNarrow = 0.01;
-
-double narrowest_axis(const ClothModel<double>& model) {
-  double narrowest = 1;
-  for (const PreparedYarn<double>& y : model.yarns()) {
-    for (const double axis : y.yarn.lobe_axes) narrowest = std::min(narrowest, axis);
-  }
-  return narrowest;
-}
 
 class ModelProducer final : public Producer {
  public:

@@ -8,6 +8,7 @@
 #include "formats/material_json.h"
 #include "tabulate/batch_kernel.h"
 #include "tests/catch.h"
+#include "tests/support/part_of.h"
 #include "tests/support/random_inputs.h"
 #include "tests/support/temporary_folder.h"
 
@@ -54,16 +55,6 @@ struct Batch {
 
   std::array<std::vector<T>, 6> in;
 };
-
-double part_of(const Components& f, const Channel& channel) {
-  switch (channel.part) {
-    case Part::kSpecular: return f.specular[channel.colour];
-    case Part::kInternal: return f.internal[channel.colour];
-    case Part::kDiffuse: return f.diffuse[channel.colour];
-    case Part::kTotal: break;
-  }
-  return f.total(channel.colour);
-}
 
 double narrowest_axis(const Material& material) {
   double narrowest = 1;

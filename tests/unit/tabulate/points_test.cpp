@@ -8,6 +8,7 @@
 #include "table/table.h"
 #include "tabulate/model_producer.h"
 #include "tests/catch.h"
+#include "tests/support/part_of.h"
 #include "tests/support/random_inputs.h"
 
 namespace clothbrdf::test {
@@ -30,16 +31,6 @@ Material random_material(RandomInputs& random, Reflectance reflectance) {
   Material material = random.material(ranges);
   material.reflectance = reflectance;
   return material;
-}
-
-double part_of(const Components& f, const Channel& channel) {
-  switch (channel.part) {
-    case Part::kSpecular: return f.specular[channel.colour];
-    case Part::kInternal: return f.internal[channel.colour];
-    case Part::kDiffuse: return f.diffuse[channel.colour];
-    case Part::kTotal: break;
-  }
-  return f.total(channel.colour);
 }
 
 }  // namespace
