@@ -38,6 +38,18 @@ T diffuse_colour(const T& absorption, const T& diffuse_path) {
   return exp(-absorption * diffuse_path);
 }
 
+/// f of the diffuse component in a channel, the same for all directions above the horizon (model.md
+/// section 7; paper, eq. 5).
+template <class T>
+T diffuse_reflectance(const BasicMaterial<T>& material, std::size_t channel) {
+  const auto colour = [&](const BasicYarn<T>& yarn) {
+    return diffuse_colour(yarn.absorption[channel], material.diffuse_path);
+  };
+  const T sum = material.weights.diffuse * (material.warp_fraction * colour(material.warp) +
+                                            (T(1) - material.warp_fraction) * colour(material.weft));
+  return material.reflectance == Reflectance::kMicrofacet ? T(sum / pi<T>()) : sum;
+}
+
 /// One lobe of a yarn: its axes, and what its height is divided by (Z, or 1 for the paper's
 /// convention).
 template <class T>
@@ -96,14 +108,7 @@ class ClothModel {
   }
 
   /// f of the diffuse component, the same for all directions above the horizon.
-  T diffuse(std::size_t channel) const {
-    T sum = T(0);
-    for (const PreparedYarn<T>& y : yarns_) {
-      sum += y.share * diffuse_colour(y.yarn.absorption[channel], material_.diffuse_path);
-    }
-    sum *= material_.weights.diffuse;
-    return material_.reflectance == Reflectance::kMicrofacet ? T(sum / pi<T>()) : sum;
-  }
+  T diffuse(std::size_t channel) const { return diffuse_reflectance(material_, channel); }
 
   /// f_r, component by component; 0 where a direction is on or below the horizon. Model.md section
   /// 7; paper, eqs. 1, 4, 5.
