@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <limits>
 #include <numeric>
 
 #include "model/reflectance.h"
 #include "support/errors.h"
+#include "tabulate/factor_arc.h"
 
 namespace clothbrdf {
 namespace {
@@ -39,6 +40,63 @@ double factor_at(Reflectance reflectance, bool folded, double h_n, double x, dou
   return (factor + directional_factor(reflectance, h_n, x, cos_o, cos_i)) / 2;
 }
 
+// The directional factor along the cells of phi_d, at one theta_h and theta_d.
+class PhiCells {
+ public:
+  PhiCells(const Axis& phi_d, bool average, Reflectance reflectance)
+      : folded_(phi_d.highest_deg <= 180), reflectance_(reflectance) {
+    for (int k = 0; k < phi_d.size; ++k) {
+      if (!average) {
+        cos_phi_.push_back(sincosd(phi_d.node_deg(k)).cos);
+        continue;
+      }
+      // Arcs count chi from the right angle; beyond 180 degrees cos phi_d runs back.
+      for (int e = 0; e <= 1; ++e) {
+        const double phi = phi_d.edge_deg(k + e);
+        const double chi = (phi > 180 ? phi - 270 : 90 - phi) * (pi<double>() / 180);
+        edges_.emplace_back(std::clamp(chi, -pi<double>() / 2, pi<double>() / 2));
+      }
+    }
+  }
+
+  // Adds to the measure of each cell above the horizon; of averages the integral of the factor,
+  // by the same measure, goes to `factors`. No quadrature here follows the horizon through a cell:
+  // cells that it cuts have no measure.
+  void fill(const SinCos<double>& h, const SinCos<double>& d, double weight, double* factors,
+            double* measure) const {
+    if (edges_.empty()) {
+      for (std::size_t k = 0; k < cos_phi_.size(); ++k) {
+        const IncidenceCosines<double> c = incidence_cosines(h, d, cos_phi_[k]);
+        factors[k] = factor_at(reflectance_, folded_, h.cos, d.cos, c.i, c.o);
+        measure[k] += factors[k] > 0 ? 1 : 0;
+      }
+      return;
+    }
+    const FactorArc arc(h, d);
+    const double size = weight * h.sin * d.sin * d.cos;
+    for (std::size_t k = 0; k < edges_.size() / 2; ++k) {
+      const FactorArc::Edge& from = edges_[2 * k];
+      const FactorArc::Edge& to = edges_[2 * k + 1];
+      const FactorArc::Integral a = arc.from_right_angle(from);
+      const FactorArc::Integral b = arc.from_right_angle(to);
+      const double length = std::abs(b.length - a.length);
+      constexpr double kWhole = 1 - 1e-9;
+      if (!(length >= kWhole * std::abs(to.chi - from.chi))) {
+        measure[k] = -std::numeric_limits<double>::infinity();
+        continue;
+      }
+      factors[k] = size * std::abs(b.factor - a.factor);
+      measure[k] += size * length;
+    }
+  }
+
+ private:
+  bool folded_;
+  Reflectance reflectance_;
+  std::vector<double> cos_phi_;
+  std::vector<FactorArc::Edge> edges_;  // two a cell
+};
+
 void observe_half_difference(const TableSpec& spec, Reflectance reflectance, Observations& out) {
   const Grid& grid = spec.grid();
   const bool average = spec.cells.average;
@@ -46,12 +104,13 @@ void observe_half_difference(const TableSpec& spec, Reflectance reflectance, Obs
   const Axis& theta_h = grid.axes[0];
   const Axis& theta_d = grid.axes[grid.axes.size() - 2];
   const Axis& phi_d = grid.axes.back();
-  const bool folded = phi_d.highest_deg <= 180;
+
   const auto phi_h_count = static_cast<std::size_t>(with_phi_h ? grid.axes[1].size : 1);
   const auto d_count = static_cast<std::size_t>(theta_d.size);
   const auto samples = static_cast<std::size_t>(phi_d.size);
   out.value_stride = grid.column_count();
 
+  std::vector<double> measure(samples);
   std::vector<std::vector<Node>> d_nodes;
   for (int d = 0; d < theta_d.size; ++d) {
     d_nodes.push_back(cell_nodes(theta_d, d, average));
@@ -59,48 +118,26 @@ void observe_half_difference(const TableSpec& spec, Reflectance reflectance, Obs
       out.cos_theta_d.push_back(sincosd(node.angle_deg).cos);
     }
   }
-  // Within a cell phi_d is sampled evenly; its part above the horizon counts.
-  std::vector<std::vector<double>> cos_phi(samples);
-  for (std::size_t p = 0; p < samples; ++p) {
-    const int k = static_cast<int>(p);
-    constexpr int kParts = 4;
-    for (int part = 0; part < (average ? kParts : 1); ++part) {
-      const double at = (part + 0.5) / kParts;
-      cos_phi[p].push_back(
-          sincosd(average ? phi_d.edge_deg(k) + (phi_d.edge_deg(k + 1) - phi_d.edge_deg(k)) * at
-                          : phi_d.node_deg(k))
-              .cos);
-    }
-  }
+  const PhiCells cells(phi_d, average, reflectance);
   for (int h = 0; h < theta_h.size; ++h) {
     const std::vector<Node> h_nodes = cell_nodes(theta_h, h, average);
     const std::size_t sites = h_nodes.size() * d_nodes[0].size();
     const std::size_t first_factor = out.factors.size();
     out.factors.resize(first_factor + d_count * sites * samples);
     for (std::size_t d = 0; d < d_count; ++d) {
-      for (std::size_t p = 0; p < samples; ++p) {
-        double measure = 0;
-        std::size_t site = 0;
-        double* const at = out.factors.data() + first_factor + d * sites * samples + p;
-        for (const Node& hn : h_nodes) {
-          const SinCos<double> th = sincosd(hn.angle_deg);
-          for (const Node& dn : d_nodes[d]) {
-            const SinCos<double> td = sincosd(dn.angle_deg);
-            const double weight = average ? hn.weight * dn.weight * th.sin * td.sin * td.cos : 1;
-            double sum = 0;
-            for (const double c : cos_phi[p]) {
-              const IncidenceCosines<double> cosines = incidence_cosines(th, td, c);
-              const double f = factor_at(reflectance, folded, th.cos, td.cos, cosines.i, cosines.o);
-              if (f > 0) measure += weight;
-              sum += weight * f;
-            }
-            at[site++ * samples] = sum;
-          }
+      double* const factors = out.factors.data() + first_factor + d * sites * samples;
+      std::size_t site = 0;
+      std::fill(measure.begin(), measure.end(), 0.0);
+      for (const Node& hn : h_nodes) {
+        for (const Node& dn : d_nodes[d]) {
+          cells.fill(sincosd(hn.angle_deg), sincosd(dn.angle_deg), hn.weight * dn.weight,
+                     factors + site++ * samples, measure.data());
         }
-        if (measure > 0) {
-          for (std::size_t s = 0; s < sites; ++s) at[s * samples] /= measure;
-        } else {
-          out.below_horizon += phi_h_count;
+      }
+      for (std::size_t p = 0; p < samples; ++p) {
+        if (!(measure[p] > 0)) out.below_horizon += phi_h_count;
+        for (std::size_t s = 0; average && s < sites; ++s) {
+          factors[s * samples + p] = measure[p] > 0 ? factors[s * samples + p] / measure[p] : 0;
         }
       }
     }
@@ -157,7 +194,10 @@ class PairSites {
     double measure = 0;
     for (const auto& [pair, weight] : pairs) {
       const PairGeometry<double> g = pair_geometry(pair, 0.0);
-      if (!g.above_horizon()) continue;
+      if (!g.above_horizon()) {
+        measure = -std::numeric_limits<double>::infinity();
+        break;
+      }
       const double sin_theta = std::hypot(g.h_weft, g.h_warp);
       HalfVector half{.sin_theta = sin_theta, .cos_theta = g.h_n};
       if (sin_theta > 0) {
@@ -174,6 +214,10 @@ class PairSites {
       measure += weight;
     }
     if (!(measure > 0)) {
+      out_.sites.resize(first_site);
+      out_.halves.resize(first_half);
+      out_.factors.resize(first_factor);
+      x_.resize(first_site);
       ++out_.below_horizon;
       return;
     }
@@ -246,6 +290,9 @@ void observe_in_out(const TableSpec& spec, Reflectance reflectance, Observations
 }  // namespace
 
 Observations observe(const TableSpec& spec, Reflectance reflectance, Workers workers) {
+  if (spec.cells.average && reflectance == Reflectance::kPaper) {
+    throw InputError("averaged cells: the means of the paper's convention diverge");
+  }
   Observations out;
   out.channels = spec.channels.size();
   if (!spec.has_grid()) {
@@ -263,54 +310,47 @@ Observations observe(const TableSpec& spec, Reflectance reflectance, Workers wor
   return out;
 }
 
-Observations thinned(const Observations& all, std::size_t most_x, std::size_t most_sites) {
-  // Which cos_theta_d stay, evenly over those that are sorted by value.
-  std::vector<std::uint32_t> order(all.cos_theta_d.size());
-  std::iota(order.begin(), order.end(), 0U);
-  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return all.cos_theta_d[a] > all.cos_theta_d[b];
-  });
+Observations thinned(const Observations& all, std::size_t most_x, std::size_t most_groups) {
   constexpr std::uint32_t kGone = ~0U;
-  std::vector<std::uint32_t> kept(order.size(), kGone);
+  // The cos_theta_d of each group (the first of its sites stands for it) that stay, evenly over
+  // those that are sorted by value.
+  const auto x_of = [&](const Observations::Group& group) { return all.sites[group.first_site].x; };
+  const auto visible = [&](const Observations::Group& group) {
+    const auto first = all.factors.begin() + static_cast<std::ptrdiff_t>(group.first_factor);
+    return std::any_of(first, first + static_cast<std::ptrdiff_t>(group.samples),
+                       [](double factor) { return factor > 0; });
+  };
+  std::vector<std::uint32_t> order;
+  for (const Observations::Group& group : all.groups) {
+    if (visible(group)) order.push_back(x_of(group));
+  }
+  const auto higher = [&](std::uint32_t a, std::uint32_t b) {
+    return all.cos_theta_d[a] > all.cos_theta_d[b];
+  };
+  std::sort(order.begin(), order.end(), higher);
+  order.erase(std::unique(order.begin(), order.end()), order.end());
+  std::vector<bool> stays(all.cos_theta_d.size(), false);
+  const std::size_t x_count = std::min(most_x, order.size());
+  for (std::size_t k = 0; k < x_count; ++k) {
+    stays[order[x_count == 1 ? 0 : k * (order.size() - 1) / (x_count - 1)]] = true;
+  }
+  std::vector<std::size_t> candidates;
+  for (std::size_t g = 0; g < all.groups.size(); ++g) {
+    if (stays[x_of(all.groups[g])] && visible(all.groups[g])) candidates.push_back(g);
+  }
+  // An irrational step favours no angle of a regular grid.
+  const double step =
+      candidates.size() <= most_groups
+          ? 1
+          : static_cast<double>(candidates.size()) / static_cast<double>(most_groups) * 1.0000618;
+
   Observations few;
   few.value_stride = all.value_stride;
   few.channels = all.channels;
-  const std::size_t x_count = std::min(most_x, order.size());
-  for (std::size_t k = 0; k < x_count; ++k) {
-    const std::size_t at = x_count == 1 ? 0 : k * (order.size() - 1) / (x_count - 1);
-    if (kept[order[at]] != kGone) continue;
-    kept[order[at]] = static_cast<std::uint32_t>(few.cos_theta_d.size());
-    few.cos_theta_d.push_back(all.cos_theta_d[order[at]]);
-  }
-  const auto stays = [&](const Observations::Group& group) {
-    for (std::size_t s = 0; s < group.sites; ++s) {
-      if (kept[all.sites[group.first_site + s].x] == kGone) return false;
-    }
-    for (std::size_t k = 0; k < group.samples; ++k) {
-      if (all.factors[group.first_factor + k] > 0) return true;
-    }
-    return false;
-  };
-  std::vector<std::size_t> chosen;
-  std::size_t sites = 0;
-  for (std::size_t g = 0; g < all.groups.size(); ++g) {
-    if (!stays(all.groups[g])) continue;
-    chosen.push_back(g);
-    sites += all.groups[g].sites;
-  }
-  const std::size_t step = std::max<std::size_t>(1, (sites + most_sites - 1) / most_sites);
-  // A step that shares no factor with the number of groups of a half vector would favour no
-  // angle; one over the golden section has none.
-  std::vector<std::size_t> taken;
-  double next = 0;
-  for (std::size_t k = 0; k < chosen.size(); ++k) {
-    if (static_cast<double>(k) < next) continue;
-    taken.push_back(chosen[k]);
-    next += static_cast<double>(step) * (step > 1 ? 1.0 + 0.0618033988749895 : 1.0);
-  }
   std::vector<std::uint32_t> half_at(all.halves.size(), kGone);
-  for (const std::size_t g : taken) {
-    const Observations::Group& group = all.groups[g];
+  std::vector<std::uint32_t> x_at(all.cos_theta_d.size(), kGone);
+  for (double next = 0; next < static_cast<double>(candidates.size()); next += step) {
+    const Observations::Group& group = all.groups[candidates[static_cast<std::size_t>(next)]];
     Observations::Group copy = group;
     copy.first_site = few.sites.size();
     copy.first_factor = few.factors.size();
@@ -320,7 +360,11 @@ Observations thinned(const Observations& all, std::size_t most_x, std::size_t mo
         half_at[site.half] = static_cast<std::uint32_t>(few.halves.size());
         few.halves.push_back(all.halves[site.half]);
       }
-      few.sites.push_back({half_at[site.half], kept[site.x]});
+      if (x_at[site.x] == kGone) {
+        x_at[site.x] = static_cast<std::uint32_t>(few.cos_theta_d.size());
+        few.cos_theta_d.push_back(all.cos_theta_d[site.x]);
+      }
+      few.sites.push_back({half_at[site.half], x_at[site.x]});
     }
     const auto from = all.factors.begin() + static_cast<std::ptrdiff_t>(group.first_factor);
     few.factors.insert(few.factors.end(), from,

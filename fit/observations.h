@@ -49,16 +49,17 @@ struct Observations {
   std::size_t below_horizon = 0;  ///< cells
 };
 
-/// Quadrature nodes along each angle of an averaged cell (the azimuths of half/difference cells are
-/// integrated in closed form where the convention allows it).
+/// Quadrature nodes along each angle of an averaged cell (azimuths of half/difference cells are
+/// integrated in closed form). Averaged cells that the horizon cuts are left out.
 inline constexpr int kCellNodes = 3;
 
 /// Of a table's samples, for one convention. phi_d up to 180 degrees: the paper's convention is the
-/// mean over both orders of the directions.
+/// mean over both orders of the directions. Averages are those of the microfacet convention: the
+/// paper's diverge (InputError).
 Observations observe(const TableSpec& spec, Reflectance reflectance, Workers workers);
 
-/// About `most_sites` sites over few distinct cos_theta_d, spread over the whole table: what a
-/// search needs.
-Observations thinned(const Observations& all, std::size_t most_x, std::size_t most_sites);
+/// Some of the groups, with few distinct cos_theta_d, spread over the whole table: what a search
+/// needs.
+Observations thinned(const Observations& all, std::size_t most_x, std::size_t most_groups);
 
 }  // namespace clothbrdf
