@@ -1,7 +1,6 @@
 #include "fit/misfit.h"
 
 #include <ceres/jet.h>
-#include <tbb/parallel_for.h>
 
 #include <Eigen/QR>
 #include <algorithm>
@@ -9,8 +8,8 @@
 #include <cmath>
 #include <optional>
 
+#include "fit/parallel.h"
 #include "model/reflectance.h"
-#include "support/threads.h"
 #include "tabulate/vectorise.h"
 
 namespace clothbrdf {
@@ -234,22 +233,16 @@ Row diffuse_rows(const Prepared& prepared, const Rows& rows, std::size_t channel
 }
 
 // Runs work(chunk, first bundle, end bundle) over a fixed number of chunks, whatever the threads.
+constexpr std::size_t kChunks = 16;
 template <class Work>
-std::size_t for_chunks(std::size_t bundles, Workers workers, const Work& work) {
-  constexpr std::size_t kMostChunks = 16;
-  const std::size_t chunks = std::min(bundles, kMostChunks);
+void for_chunks(std::size_t bundles, Workers workers, const Work& work) {
+  const std::size_t chunks = std::min(bundles, kChunks);
   const auto run = [&](std::size_t chunk) {
     workers.check();
     work(chunk, chunk * bundles / chunks, (chunk + 1) * bundles / chunks);
   };
-  if (workers.threads == 1) {
-    for (std::size_t k = 0; k < chunks; ++k) run(k);
-  } else {
-    tbb::parallel_for(std::size_t{0}, chunks, run);
-  }
-  return chunks;
+  run_parallel(chunks, workers, run);
 }
-constexpr std::size_t kChunks = 16;
 
 using Products =
     Eigen::Matrix<double, static_cast<int>(kWidth), static_cast<int>(kWidth), Eigen::RowMajor>;

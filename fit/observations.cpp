@@ -63,11 +63,12 @@ class PhiCells {
   // by the same measure, goes to `factors`. No quadrature here follows the horizon through a cell:
   // cells that it cuts have no measure.
   void fill(const SinCos<double>& h, const SinCos<double>& d, double weight, double* factors,
-            double* measure) const {
+            float* lower_cosines, double* measure) const {
     if (edges_.empty()) {
       for (std::size_t k = 0; k < cos_phi_.size(); ++k) {
         const IncidenceCosines<double> c = incidence_cosines(h, d, cos_phi_[k]);
         factors[k] = factor_at(reflectance_, folded_, h.cos, d.cos, c.i, c.o);
+        lower_cosines[k] = static_cast<float>(std::min(c.i, c.o));
         measure[k] += factors[k] > 0 ? 1 : 0;
       }
       return;
@@ -86,6 +87,8 @@ class PhiCells {
         continue;
       }
       factors[k] = size * std::abs(b.factor - a.factor);
+      const IncidenceCosines<double> c = incidence_cosines(h, d, std::sin((from.chi + to.chi) / 2));
+      lower_cosines[k] = static_cast<float>(std::min(c.i, c.o));
       measure[k] += size * length;
     }
   }
@@ -124,14 +127,17 @@ void observe_half_difference(const TableSpec& spec, Reflectance reflectance, Obs
     const std::size_t sites = h_nodes.size() * d_nodes[0].size();
     const std::size_t first_factor = out.factors.size();
     out.factors.resize(first_factor + d_count * sites * samples);
+    out.lower_cosines.resize(out.factors.size());
     for (std::size_t d = 0; d < d_count; ++d) {
       double* const factors = out.factors.data() + first_factor + d * sites * samples;
+      float* const lower_cosines = out.lower_cosines.data() + first_factor + d * sites * samples;
       std::size_t site = 0;
       std::fill(measure.begin(), measure.end(), 0.0);
       for (const Node& hn : h_nodes) {
         for (const Node& dn : d_nodes[d]) {
           cells.fill(sincosd(hn.angle_deg), sincosd(dn.angle_deg), hn.weight * dn.weight,
-                     factors + site++ * samples, measure.data());
+                     factors + site * samples, lower_cosines + site * samples, measure.data());
+          ++site;
         }
       }
       for (std::size_t p = 0; p < samples; ++p) {
@@ -209,6 +215,7 @@ class PairSites {
       out_.sites.push_back({static_cast<std::uint32_t>(out_.halves.size()), 0});
       out_.halves.push_back(half);
       x_.push_back(g.cos_theta_d);
+      out_.lower_cosines.push_back(static_cast<float>(std::min(g.cos_theta_i, g.cos_theta_o)));
       out_.factors.push_back(weight * directional_factor(reflectance_, g.h_n, g.cos_theta_d,
                                                          g.cos_theta_i, g.cos_theta_o));
       measure += weight;
@@ -217,6 +224,7 @@ class PairSites {
       out_.sites.resize(first_site);
       out_.halves.resize(first_half);
       out_.factors.resize(first_factor);
+      out_.lower_cosines.resize(first_factor);
       x_.resize(first_site);
       ++out_.below_horizon;
       return;

@@ -43,8 +43,9 @@ struct Observations {
   std::vector<Site> sites;
   std::vector<Group> groups;
   std::vector<Bundle> bundles;
-  std::vector<double> factors;   ///< 0 below the horizon
-  std::size_t value_stride = 1;  ///< from a channel to the next in the table's values
+  std::vector<double> factors;       ///< 0 below the horizon
+  std::vector<float> lower_cosines;  ///< min(cos theta_i, cos theta_o), about; as `factors`
+  std::size_t value_stride = 1;      ///< from a channel to the next in the table's values
   std::size_t channels = 0;
   std::size_t below_horizon = 0;  ///< cells
 };

@@ -1,14 +1,12 @@
 #include "fit/path_basis.h"
 
 #include <ceres/jet.h>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "fit/parallel.h"
 #include "model/layers.h"
-#include "support/threads.h"
 
 namespace clothbrdf {
 namespace {
@@ -140,14 +138,7 @@ PathBasis::PathBasis(const Yarn& yarn, Paths paths, const LobeBasis& lobes,
     }
   };
   const std::size_t count = cos_theta_d.size() * channels_;
-  if (workers.threads == 1) {
-    for (std::size_t k = 0; k < count; ++k) fill_one(k);
-  } else {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 16),
-                      [&](const tbb::blocked_range<std::size_t>& range) {
-                        for (std::size_t k = range.begin(); k < range.end(); ++k) fill_one(k);
-                      });
-  }
+  run_parallel(count, workers, fill_one);
 }
 
 }  // namespace clothbrdf

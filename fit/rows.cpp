@@ -1,12 +1,10 @@
 #include "fit/rows.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "support/threads.h"
+#include "fit/parallel.h"
 #include "tabulate/vectorise.h"
 
 namespace clothbrdf {
@@ -299,15 +297,13 @@ Rows make_rows(const Observations& observations, const ValueSource& source,
                const RowWeights& weights, const ModelValues* fit, bool reduce, Workers workers) {
   const double floor = weight_floor(observations, source, fit);
   std::vector<BundlePart> parts(observations.bundles.size());
-  with_threads(workers.threads, [&] {
-    tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t b) {
-      workers.check();
-      const Observations::Bundle& bundle = observations.bundles[b];
-      BundleRows rows(observations, source, weights, fit, floor, reduce, parts[b]);
-      for (std::size_t g = bundle.first_group; g < bundle.end_group; ++g) {
-        for (std::size_t c = 0; c < observations.channels; ++c) rows.add(g, c);
-      }
-    });
+  run_parallel(parts.size(), workers, [&](std::size_t b) {
+    workers.check();
+    const Observations::Bundle& bundle = observations.bundles[b];
+    BundleRows rows(observations, source, weights, fit, floor, reduce, parts[b]);
+    for (std::size_t g = bundle.first_group; g < bundle.end_group; ++g) {
+      for (std::size_t c = 0; c < observations.channels; ++c) rows.add(g, c);
+    }
   });
   Rows all;
   all.diffuse.resize(observations.channels);

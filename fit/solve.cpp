@@ -144,7 +144,7 @@ Solution solve(const Misfit& misfit, const ParameterSet& set, const Material& st
                const SolveLimits& limits, Workers workers) {
   Solution best = solve_free(misfit, set, start, limits, workers);
   // Projected steps creep along a bound: with what it holds fixed they do not.
-  for (int round = 0; round < 3; ++round) {
+  for (int round = 0; round < limits.rounds; ++round) {
     std::vector<std::size_t> at_bound = held(misfit, set, best.material);
     const bool same = at_bound == best.at_bound;
     best.at_bound = at_bound;
@@ -161,6 +161,7 @@ Solution solve(const Misfit& misfit, const ParameterSet& set, const Material& st
     next.at_bound = at_bound;
     best = next;
   }
+  best.start = start;
   return best;
 }
 

@@ -11,6 +11,7 @@ namespace clothbrdf {
 /// Where a solve ended.
 struct Solution {
   Material material;
+  Material start;   ///< that led there
   double cost = 0;  ///< sum of squares, without Rows::constant
   bool converged = false;
   std::string termination;  ///< Ceres' name of it
@@ -23,6 +24,7 @@ struct SolveLimits {
   int iterations = 200;
   double function_tolerance = 1e-15;
   double parameter_tolerance = 1e-12;
+  int rounds = 3;  ///< of fixing what bounds hold
 };
 
 /// Levenberg-Marquardt (Ceres) from `start`; parameters that are not free, layer counts and

@@ -1,0 +1,160 @@
+#include "fit/equivalents.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <tuple>
+
+#include "fit/misfit.h"
+
+namespace clothbrdf {
+namespace {
+
+struct Exchange {
+  const char* words;
+  void (*make)(Material&);
+};
+
+// What can be exchanged without leaving the model; turns apart.
+constexpr Exchange kExchanges[] = {
+    {"the warp's lobe axes exchanged",
+     [](Material& m) { std::swap(m.warp.lobe_axes[0], m.warp.lobe_axes[1]); }},
+    {"the weft's lobe axes exchanged",
+     [](Material& m) { std::swap(m.weft.lobe_axes[0], m.weft.lobe_axes[1]); }},
+    {"shares exchanged", [](Material& m) { m.warp_fraction = 1 - m.warp_fraction; }},
+    {"lobe axes exchanged between the yarns",
+     [](Material& m) {
+       std::swap(m.warp.lobe_axes, m.weft.lobe_axes);
+       std::swap(m.warp.scatter_limit, m.weft.scatter_limit);
+     }},
+    {"absorption exchanged between the yarns",
+     [](Material& m) { std::swap(m.warp.absorption, m.weft.absorption); }},
+    {"refractive indices exchanged between the yarns",
+     [](Material& m) { std::swap(m.warp.refractive_index, m.weft.refractive_index); }},
+    {"scatter exchanged between the yarns",
+     [](Material& m) { std::swap(m.warp.scatter, m.weft.scatter); }},
+    {"layer counts exchanged between the yarns",
+     [](Material& m) { std::swap(m.warp.layers, m.weft.layers); }},
+};
+constexpr unsigned kExchangeCount = std::size(kExchanges);
+constexpr unsigned kBetweenYarns = 0xF8;  // all that belongs to a yarn
+constexpr int kTurnSteps = 12;            // of half a turn: the cloth looks the same after that
+
+double into_half_turn(double degrees) {  // (-90, 90]
+  const double turned = std::remainder(degrees, 180);
+  return turned <= -90 ? turned + 180 : turned;
+}
+
+std::string words_of(unsigned exchanges, double turn_deg) {
+  std::string words;
+  const auto add = [&](const std::string& more) { words += (words.empty() ? "" : ", ") + more; };
+  if ((exchanges & kBetweenYarns) == kBetweenYarns) {
+    add("the yarns exchanged");
+    exchanges &= ~kBetweenYarns;
+    exchanges &= ~4U;
+  }
+  for (unsigned k = 0; k < kExchangeCount; ++k) {
+    if (exchanges >> k & 1U) add(kExchanges[k].words);
+  }
+  if (turn_deg != 0) add("turned by " + std::to_string(static_cast<int>(turn_deg)) + " degrees");
+  return words;
+}
+
+bool same_table(const ModelValues& a, const ModelValues& b) {
+  constexpr double kRounding = 1e-9;
+  double largest = 0;
+  for (const double value : a.site) largest = std::max(largest, value);
+  for (const double value : a.diffuse) largest = std::max(largest, value);
+  const auto same = [&](const std::vector<double>& x, const std::vector<double>& y) {
+    for (std::size_t k = 0; k < x.size(); ++k) {
+      if (!(std::abs(x[k] - y[k]) <= kRounding * (std::abs(x[k]) + 1e-6 * largest))) return false;
+    }
+    return true;
+  };
+  return same(a.diffuse, b.diffuse) && same(a.site, b.site);
+}
+
+bool same_material(const Material& a, const Material& b, const ParameterSet& set) {
+  constexpr double kRounding = 1e-12;
+  for (const FitParameter& p : set.parameters()) {
+    const double x = parameter_value(a, p);
+    const double y = parameter_value(b, p);
+    const double turn = p.column == kRotation ? std::remainder(x - y, 180) : x - y;
+    if (!(std::abs(turn) <= kRounding * (std::abs(x) + 1))) return false;
+  }
+  return a.warp.layers == b.warp.layers && a.weft.layers == b.weft.layers;
+}
+
+// Whether the set's fixed values, ties and bounds allow the other material.
+bool allowed(const Material& from, const Material& to, const ParameterSet& set) {
+  for (std::size_t i = 0; i < set.parameters().size(); ++i) {
+    const FitParameter& p = set.parameters()[i];
+    const double value = parameter_value(to, p);
+    if (set.state(i) == ParameterSet::State::kFixed && value != parameter_value(from, p)) {
+      return false;
+    }
+    if (set.state(i) == ParameterSet::State::kFree && (value < p.lowest || value > p.highest)) {
+      return false;
+    }
+  }
+  return !(set.layers_fixed(0) && from.warp.layers != to.warp.layers) &&
+         !(set.layers_fixed(1) && from.weft.layers != to.weft.layers);
+}
+
+}  // namespace
+
+Material Relabelling::apply(const Material& material) const {
+  Material result = material;
+  for (unsigned k = 0; k < kExchangeCount; ++k) {
+    if (exchanges >> k & 1U) kExchanges[k].make(result);
+  }
+  if (turn_deg != 0) result.rotation_deg = into_half_turn(result.rotation_deg + turn_deg);
+  return result;
+}
+
+std::vector<Relabelling> find_equivalents(const Observations& places, const Material& material,
+                                          const ParameterSet& set) {
+  // One place settles most candidates.
+  Observations first = thinned(places, 1, 1);
+  const ModelValues here = model_values(places, material, kExact, 1);
+  const ModelValues here_first = model_values(first, material, kExact, 1);
+  std::vector<Relabelling> result = {{"as it is", 0, 0}};
+  std::vector<Material> materials = {material};
+  for (unsigned exchanges = 0; exchanges < 1U << kExchangeCount; ++exchanges) {
+    for (int step = 0; step < kTurnSteps; ++step) {
+      const double turn_deg = into_half_turn(step * (180.0 / kTurnSteps));
+      const Relabelling candidate = {words_of(exchanges, turn_deg), exchanges, turn_deg};
+      const Material other = candidate.apply(material);
+      if (!allowed(material, other, set)) continue;
+      if (std::any_of(materials.begin(), materials.end(),
+                      [&](const Material& known) { return same_material(known, other, set); })) {
+        continue;
+      }
+      if (!same_table(here_first, model_values(first, other, kExact, 1))) continue;
+      if (!same_table(here, model_values(places, other, kExact, 1))) continue;
+      result.push_back(candidate);
+      materials.push_back(other);
+    }
+  }
+  return result;
+}
+
+Relabelling canonical(const std::vector<Relabelling>& equivalents, const Material& material,
+                      bool with_phi_h) {
+  // Smaller is better.
+  const auto rank = [&](const Relabelling& relabelling) {
+    const Material m = relabelling.apply(material);
+    const double rotation = into_half_turn(m.rotation_deg);
+    const bool turned = with_phi_h && !(rotation > -45 && rotation <= 45);
+    const auto crossed = [](const Yarn& yarn) { return yarn.lobe_axes[0] > yarn.lobe_axes[1]; };
+    const bool warp_larger = m.warp_fraction >= 0.5;
+    const int axes =
+        with_phi_h ? crossed(warp_larger ? m.warp : m.weft) : crossed(m.warp) + crossed(m.weft);
+    return std::tuple(turned, axes, !with_phi_h && !warp_larger, relabelling.exchanges);
+  };
+  return *std::min_element(
+      equivalents.begin(), equivalents.end(),
+      [&](const Relabelling& a, const Relabelling& b) { return rank(a) < rank(b); });
+}
+
+}  // namespace clothbrdf

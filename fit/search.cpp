@@ -1,0 +1,249 @@
+#include "fit/search.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <random>
+
+namespace clothbrdf {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// A start's solve need not end: what is promising goes on from there.
+constexpr SolveLimits kFirstLook{
+    .iterations = 25, .function_tolerance = 1e-4, .parameter_tolerance = 1e-5, .rounds = 0};
+constexpr SolveLimits kNeighbour{
+    .iterations = 25, .function_tolerance = 1e-5, .parameter_tolerance = 1e-6, .rounds = 0};
+
+// Starts that go on to look for better layer counts.
+constexpr std::size_t kPromising = 6;
+
+// [0, 1), the same on every platform.
+double unit(std::mt19937_64& engine) { return static_cast<double>(engine() >> 11) * 0x1p-53; }
+
+Material scattered_start(const ParameterSet& set, const FitOptions& options, std::uint64_t number) {
+  std::mt19937_64 engine(options.seed * 0x9e3779b97f4a7c15ULL + number);
+  Material material = set.defaults();
+  for (std::size_t i = 0; i < set.parameters().size(); ++i) {
+    const double u = unit(engine);
+    if (set.has_start(i) || set.state(i) != ParameterSet::State::kFree) continue;
+    const FitParameter& p = set.parameters()[i];
+    const double low = p.to_coordinate(p.scatter_low);
+    const double high = p.to_coordinate(p.scatter_high);
+    set_parameter(material, p, p.to_value(low + (high - low) * u));
+  }
+  for (const std::size_t yarn : {0U, 1U}) {
+    const double u = unit(engine);
+    const LayerRange range = layer_range(set, options, yarn);
+    // At least one: without layers most parameters have no effect to start from.
+    const int fewest = std::min(std::max(range.fewest, 1), range.most);
+    int& layers = (yarn == 0 ? material.warp : material.weft).layers;
+    layers = std::min(fewest + static_cast<int>(u * (range.most - fewest + 1)), range.most);
+  }
+  if (set.layers_tied()) material.weft.layers = material.warp.layers;
+  return set.material(set.coordinates(material), material);
+}
+
+class Searcher {
+ public:
+  Searcher(const Misfit& misfit, const ParameterSet& set, const FitOptions& options,
+           Workers workers)
+      : misfit_(misfit),
+        set_(set),
+        options_(options),
+        workers_(workers),
+        single_(1, workers.progress) {}
+
+  Solution fit(const Material& start, const SolveLimits& limits) const {
+    return solve(misfit_, set_, start, limits, single_);
+  }
+
+  // On from where another solve ended, with layer counts of its own.
+  Solution go_on(const Solution& from, int warp, int weft) const {
+    Solution next = fit(with_layers(from.material, warp, weft), kNeighbour);
+    next.start = from.start;
+    return next;
+  }
+  Solution go_on(const Solution& from) const {
+    return go_on(from, from.material.warp.layers, from.material.weft.layers);
+  }
+
+  // Better counts beside those of `from`, one step at a time.
+  Solution descend(Solution from, const LayerTable& table) const {
+    for (;;) {
+      Solution best = from;
+      for (const auto& [dw, df] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, -1}}) {
+        if (std::abs(dw + df) != 1 && !set_.layers_tied()) continue;
+        const int warp = from.material.warp.layers + dw;
+        const int weft = from.material.weft.layers + df;
+        if (!table.holds(warp, weft)) continue;
+        Solution next = go_on(from, warp, weft);
+        if (next.cost < best.cost) best = next;
+      }
+      if (!(best.cost < from.cost * (1 - 1e-3))) return from;
+      from = best;
+    }
+  }
+
+  static Material with_layers(Material material, int warp, int weft) {
+    material.warp.layers = warp;
+    material.weft.layers = weft;
+    return material;
+  }
+
+  // Every pair of counts, from the best outward, each from its best neighbours.
+  void fill(LayerTable& table) const {
+    const std::pair<int, int> centre = table.best();
+    const auto distance = [&](const std::pair<int, int>& pair) {
+      return std::abs(pair.first - centre.first) + std::abs(pair.second - centre.second);
+    };
+    int farthest = 0;
+    for (const auto& pair : table.pairs()) farthest = std::max(farthest, distance(pair));
+    for (int ring = 1; ring <= farthest; ++ring) {
+      std::vector<std::pair<int, int>> pairs;
+      for (const auto& pair : table.pairs()) {
+        if (distance(pair) == ring) pairs.push_back(pair);
+      }
+      std::vector<Solution> found(pairs.size());
+      tbb::parallel_for(std::size_t{0}, pairs.size(), [&](std::size_t k) {
+        found[k] = from_neighbours(table, pairs[k].first, pairs[k].second);
+      });
+      for (std::size_t k = 0; k < pairs.size(); ++k) {
+        Solution& to = table.at(pairs[k].first, pairs[k].second);
+        if (found[k].cost < to.cost) to = found[k];
+      }
+      workers_.advance(pairs.size());
+    }
+  }
+
+ private:
+  Solution from_neighbours(const LayerTable& table, int warp, int weft) const {
+    const Solution* nearest = nullptr;
+    for (int dw = -1; dw <= 1; ++dw) {
+      for (int df = -1; df <= 1; ++df) {
+        if (!table.holds(warp + dw, weft + df)) continue;
+        const Solution& beside = table.at(warp + dw, weft + df);
+        if (nearest == nullptr || beside.cost < nearest->cost) nearest = &beside;
+      }
+    }
+    return go_on(*nearest, warp, weft);
+  }
+
+  const Misfit& misfit_;
+  const ParameterSet& set_;
+  const FitOptions& options_;
+  Workers workers_;
+  Workers single_;
+};
+
+// `rounding`: a cost that the sums' own error explains.
+void count_optima(const std::vector<Solution>& ends, double best, double rounding, Search& result) {
+  // Starts that ended within this of each other are in one minimum.
+  constexpr double kShare = 0.05;
+  const auto same = [&](double a, double b) { return std::abs(a - b) <= kShare * a + rounding; };
+  for (const Solution& end : ends) {
+    if (same(best, end.cost)) ++result.starts_at_best;
+    bool known = false;
+    for (Optimum& optimum : result.optima) {
+      if (same(optimum.chi2, end.cost)) {
+        ++optimum.starts;
+        known = true;
+        break;
+      }
+    }
+    if (!known) {
+      result.optima.push_back({end.cost, 1, end.material.warp.layers, end.material.weft.layers});
+    }
+  }
+  std::sort(result.optima.begin(), result.optima.end(),
+            [](const Optimum& a, const Optimum& b) { return a.chi2 < b.chi2; });
+}
+
+}  // namespace
+
+LayerRange layer_range(const ParameterSet& set, const FitOptions& options, std::size_t yarn) {
+  if (!set.layers_fixed(yarn)) return {options.fewest_layers, options.most_layers};
+  const int layers = (yarn == 0 ? set.defaults().warp : set.defaults().weft).layers;
+  return {layers, layers};
+}
+
+LayerTable::LayerTable(LayerRange warp, LayerRange weft, bool tied)
+    : warp_(warp), weft_(weft), tied_(tied) {
+  Solution none;
+  none.cost = kInfinity;
+  for (int a = warp.fewest; a <= warp.most; ++a) {
+    for (int b = weft.fewest; b <= weft.most; ++b) {
+      if (!tied || a == b) pairs_.emplace_back(a, b);
+      fits_.push_back(none);
+    }
+  }
+}
+
+bool LayerTable::holds(int warp, int weft) const {
+  return warp >= warp_.fewest && warp <= warp_.most && weft >= weft_.fewest && weft <= weft_.most &&
+         (!tied_ || warp == weft);
+}
+
+std::size_t LayerTable::index(int warp, int weft) const {
+  return static_cast<std::size_t>((warp - warp_.fewest) * (weft_.most - weft_.fewest + 1) + weft -
+                                  weft_.fewest);
+}
+
+std::pair<int, int> LayerTable::best() const {
+  std::pair<int, int> best = pairs_.front();
+  for (const auto& pair : pairs_) {
+    if (at(pair.first, pair.second).cost < at(best.first, best.second).cost) best = pair;
+  }
+  return best;
+}
+
+Search search(const Misfit& misfit, const ParameterSet& set, const FitOptions& options,
+              Reflectance reflectance, Paths paths, Workers workers) {
+  Search result{
+      LayerTable(layer_range(set, options, 0), layer_range(set, options, 1), set.layers_tied()),
+      0,
+      0,
+      {}};
+  const Searcher searcher(misfit, set, options, workers);
+  const bool asked = options.start.has_value();
+  const auto starts = static_cast<std::size_t>(asked ? 1 : std::max(options.starts, 1));
+  result.starts = asked ? 0 : static_cast<int>(starts);
+
+  std::vector<Solution> ends(starts);
+  tbb::parallel_for(std::size_t{0}, starts, [&](std::size_t k) {
+    Material start = asked ? set.defaults() : scattered_start(set, options, k);
+    start.reflectance = reflectance;
+    start.paths = paths;
+    const auto inside = [&](int layers, std::size_t yarn) {
+      const LayerRange range = layer_range(set, options, yarn);
+      return std::clamp(layers, range.fewest, range.most);
+    };
+    start =
+        Searcher::with_layers(start, inside(start.warp.layers, 0), inside(start.weft.layers, 1));
+    if (!asked) start = with_best_weights(misfit, set, start);
+    ends[k] = searcher.fit(start, kFirstLook);
+    workers.advance(1);
+  });
+  std::stable_sort(ends.begin(), ends.end(),
+                   [](const Solution& a, const Solution& b) { return a.cost < b.cost; });
+  const std::size_t promising = std::min(ends.size(), kPromising);
+  tbb::parallel_for(std::size_t{0}, promising, [&](std::size_t k) {
+    ends[k] = searcher.descend(searcher.go_on(ends[k]), result.layers);
+  });
+  for (const Solution& end : ends) {
+    Solution& to = result.layers.at(end.material.warp.layers, end.material.weft.layers);
+    if (end.cost < to.cost) to = end;
+  }
+  const std::pair<int, int> best = result.layers.best();
+  const double tolerance = kSearching.tolerance;
+  count_optima(ends, result.layers.at(best.first, best.second).cost,
+               tolerance * tolerance * misfit.rows().target_square, result);
+  searcher.fill(result.layers);
+  return result;
+}
+
+}  // namespace clothbrdf
