@@ -75,15 +75,15 @@ std::string starts_text(const FitReport& report) {
   if (report.starts == 0) return "";
   std::string text = std::to_string(report.starts_at_best) + " of " +
                      std::to_string(report.starts) + " scattered ones reached the best optimum";
-  const auto& optima = report.optima;
-  // The first is that one.
+  const auto best = std::min_element(report.optima.begin(), report.optima.end(),
+                                     [](auto& a, auto& b) { return a.chi2 < b.chi2; });
   std::string others;
-  for (std::size_t i = 1; i < optima.size(); ++i) {
-    others += i == 1 ? "; others ended higher by chi2 " : ", ";
-    others += short_number(optima[i].chi2 - optima[0].chi2) + " (" +
-              std::to_string(optima[i].starts) + ", layers " +
-              std::to_string(optima[i].warp_layers) + "/" + std::to_string(optima[i].weft_layers) +
-              ")";
+  for (auto at = report.optima.begin(); at != report.optima.end(); ++at) {
+    if (at == best) continue;
+    others += others.empty() ? "; others ended higher by chi2 " : ", ";
+    others += short_number(at->chi2 - best->chi2) + " (" + std::to_string(at->starts) +
+              ", layers " + std::to_string(at->warp_layers) + "/" +
+              std::to_string(at->weft_layers) + ")";
   }
   return labelled("starts", text + others);
 }
