@@ -69,6 +69,15 @@ void name_material(const FitCommandOptions& options, Material& material) {
   }
 }
 
+/// Why a fit has no material that a file can hold; empty where it has one.
+std::string what_is_missing(const FitReport& report) {
+  if (!report.failure.empty()) return report.failure;
+  const std::optional<MaterialProblem> problem = find_problem(report.material);
+  return problem ? "the material fits no material file: " + problem->pointer + ": " +
+                       problem->value + " is not allowed: " + problem->allowed
+                 : "";
+}
+
 /// Commits all that can be written; the names of what cannot.
 std::string write_files(const FitReport& report, bool has_material, const Table& table,
                         const Workers& workers, FitFiles& files) {
@@ -117,17 +126,18 @@ void fit(const FitCommandOptions& options) {
   const Workers workers{threads, &bar.progress()};
   FitReport report = fit_table(table, fit_options, workers);
   report.table = options.table;
-  const bool has_material = report.failure.empty() && !find_problem(report.material);
-  if (has_material) name_material(options, report.material);
+  add_wavelengths(table.spec().channels, report);
+  if (report.failure.empty()) name_material(options, report.material);
+  const std::string missing = what_is_missing(report);
+  const bool has_material = missing.empty();
   const std::string left_out = write_files(report, has_material, table, workers, files);
   bar.clear();
   std::cout << (options.json ? fit_report_to_json(report)
                              : fit_summary(report) + what_was_written(options, left_out));
 
-  std::string trouble;
-  if (!report.failure.empty()) {
-    trouble = report.failure;
-  } else if (!report.converged) {
+  // A material that no file can hold is no trouble for who wants none.
+  std::string trouble = report.failure.empty() && left_out.empty() ? "" : missing;
+  if (report.failure.empty() && !report.converged) {
     trouble = "the fit did not converge: " + report.termination +
               (report.message.empty() ? "" : ": " + report.message);
   }

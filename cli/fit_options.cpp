@@ -4,6 +4,8 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <string_view>
+#include <utility>
 
 #include "cli/options.h"
 #include "fit/fit.h"
@@ -160,6 +162,19 @@ std::size_t total_count(const std::vector<Channel>& channels) {
                                                 [](auto& c) { return c.part == Part::kTotal; }));
 }
 
+/// None where a channel is not named after its wavelength.
+std::vector<double> wavelengths_of(const std::vector<Channel>& channels) {
+  std::vector<double> wavelengths;
+  for (const Channel& channel : channels) {
+    double wavelength = 0;
+    const char* const end = channel.name.data() + channel.name.size();
+    const auto [next, error] = std::from_chars(channel.name.data(), end, wavelength);
+    if (error != std::errc() || std::string_view(next, end) != "nm") return {};
+    wavelengths.push_back(wavelength);
+  }
+  return wavelengths;
+}
+
 void add_wish_option(CLI::App& command, FitFlags& flags, Kind kind, const std::string& type,
                      const std::string& help) {
   // Called for each value as it comes: the order among all such options counts.
@@ -253,6 +268,15 @@ Table read_totals(const std::string& file) {
   Table table = read_table(file);
   const std::vector<Channel>& channels = table.spec().channels;
   return total_count(channels) == channels.size() ? table : without_components(table);
+}
+
+void add_wavelengths(const std::vector<Channel>& channels, FitReport& report) {
+  const std::vector<double> wavelengths = wavelengths_of(channels);
+  const auto add = [&](Material& material) {
+    if (material.wavelengths_nm.empty()) material.wavelengths_nm = wavelengths;
+  };
+  add(report.material);
+  for (Equivalent& equivalent : report.equivalents) add(equivalent.material);
 }
 
 void check_output_names(const std::vector<OutputName>& outputs,

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "fit/options.h"
+#include "fit/report.h"
 #include "table/table.h"
 
 namespace clothbrdf {
@@ -51,6 +52,10 @@ FitOptions read_fit_options(const FitFlags& flags, const std::vector<Channel>& c
 
 /// Reads a table of any format, without the components of f_r.
 Table read_totals(const std::string& file);
+
+/// Gives the materials of a fit the wavelengths that the table's channels are named after, "550nm",
+/// where they have none: a material file needs them.
+void add_wavelengths(const std::vector<Channel>& channels, FitReport& report);
 
 /// Throws InputError where a file is to be written that is also read, or twice, or whose ending is
 /// not allowed.

@@ -79,8 +79,9 @@ void check_outputs(const IdentifyCommandOptions& options) {
     const std::string ending = std::filesystem::path(file).extension().string();
     const bool fits = options.sweep ? ending == ".csv" || ending == ".png" : ending == ".json";
     if (!fits) {
-      throw InputError("--output: " + file + ": the ending '" + ending + "' is not allowed: " +
-                       (options.sweep ? ".csv (the map) or .png (its picture)" : ".json"));
+      const char* const allowed = options.sweep ? ".csv (the map) or .png (its picture)" : ".json";
+      throw InputError("--output: " + file + ": the ending '" + ending +
+                       "' is not allowed: " + allowed);
     }
     outputs.push_back({"--output", file, ending});
   }
@@ -118,7 +119,8 @@ std::vector<unsigned char> measured(const Table& table) {
 
 Subject table_subject(const IdentifyCommandOptions& options, const Table& table,
                       const FitOptions& fit_options, const Workers& workers) {
-  const FitReport report = fit_table(table, fit_options, workers);
+  FitReport report = fit_table(table, fit_options, workers);
+  add_wavelengths(table.spec().channels, report);
   if (!report.failure.empty()) throw WorkError(options.file + ": " + report.failure);
   if (!report.converged) {
     throw WorkError(options.file + ": the fit did not converge: " + report.termination +

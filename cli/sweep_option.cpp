@@ -24,6 +24,7 @@ InputError refusal(const std::string& text) {
 
 std::vector<double> log_spaced(double low, double high, int count) {
   std::vector<double> values;
+  values.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {
     values.push_back(low * std::pow(high / low, static_cast<double>(i) / (count - 1)));
   }

@@ -249,7 +249,9 @@ std::string laid_out(const Ordered& value, std::size_t indent, std::size_t colum
   std::string text;
   for (const auto& [key, child] : value.items()) {
     const std::string name = object ? on_one_line(Ordered(key)) + ": " : "";
-    text += (text.empty() ? "" : ",") + start + name;
+    if (!text.empty()) text += ',';
+    text += start;
+    text += name;
     text += laid_out(child, indent + 2, indent + 2 + name.size());
   }
   text += "\n" + std::string(indent, ' ');

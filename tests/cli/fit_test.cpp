@@ -209,6 +209,33 @@ TEST_CASE("fit refuses options that make no sense, in one line that says what is
         "");
 }
 
+TEST_CASE("the material fitted to a spectral table has the table's wavelengths") {
+  const TemporaryFolder folder;
+  Material material = read_material(preset("silk"));
+  material.wavelengths_nm = {450, 650.5};
+  material.warp.absorption = material.weft.absorption = {0.1, 0.4};
+  const std::string source = (folder / "source.json").string();
+  const std::string table = (folder / "spectral.exr").string();
+  const std::string fitted = (folder / "fitted.json").string();
+  write_file(source, material_to_json(material));
+  output_of({"tabulate", source, "-o", table, "--grid", "halfdiff3d:12x12x24"});
+  output_of(fit(table, {"--material", fitted}));
+  CHECK(read_material(fitted).wavelengths_nm == material.wavelengths_nm);
+}
+
+TEST_CASE("a fitted material that no material file can hold is told where one is asked for") {
+  const TemporaryFolder folder;
+  const std::string table = (folder / "grey.exr").string();
+  const std::string fitted = (folder / "fitted.json").string();
+  write_table(lambertian(halfdiff3d(8, 8, 8), 0.5), table);
+  const Outcome outcome =
+      run_program({"fit", table, "--fix", "weights.specular=0", "--fix", "weights.internal=0",
+                   "--layers", "1:1", "--starts", "1", "--material", fitted});
+  CHECK(outcome.exit_code == 1);
+  CHECK_THAT(outcome.err, ContainsSubstring("; not written: " + fitted));
+  CHECK_FALSE(std::filesystem::exists(fitted));
+}
+
 TEST_CASE("fit refuses a start that has not as many channels as the table") {
   const TemporaryFolder folder;
   const std::string table = (folder / "grey.exr").string();
