@@ -8,6 +8,7 @@
 #include "cli/commands.h"
 #include "cli/fit_options.h"
 #include "cli/options.h"
+#include "cli/output_names.h"
 #include "cli/progress_bar.h"
 #include "cli/report_text.h"
 #include "fit/fit.h"

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <filesystem>
 #include <string_view>
 #include <utility>
 
@@ -277,24 +276,6 @@ void add_wavelengths(const std::vector<Channel>& channels, FitReport& report) {
   };
   add(report.material);
   for (Equivalent& equivalent : report.equivalents) add(equivalent.material);
-}
-
-void check_output_names(const std::vector<OutputName>& outputs,
-                        const std::vector<std::string>& inputs) {
-  for (auto at = outputs.begin(); at != outputs.end(); ++at) {
-    const std::string ending = std::filesystem::path(at->file).extension().string();
-    if (!at->ending.empty() && ending != at->ending) {
-      throw InputError(at->option + ": " + at->file + ": the ending '" + ending +
-                       "' is not allowed: " + at->ending);
-    }
-    const auto is_it = [&](const std::string& file) { return same_file(at->file, file); };
-    if (std::any_of(outputs.begin(), at, [&](const auto& other) { return is_it(other.file); })) {
-      throw InputError(at->option + ": " + at->file + " is given twice");
-    }
-    if (std::any_of(inputs.begin(), inputs.end(), is_it)) {
-      throw InputError(at->option + ": " + at->file + " is also read; it needs another name");
-    }
-  }
 }
 
 }  // namespace clothbrdf

@@ -57,14 +57,4 @@ Table read_totals(const std::string& file);
 /// where they have none: a material file needs them.
 void add_wavelengths(const std::vector<Channel>& channels, FitReport& report);
 
-/// Throws InputError where a file is to be written that is also read, or twice, or whose ending is
-/// not allowed.
-struct OutputName {
-  std::string option;  ///< "--material"
-  std::string file;
-  std::string ending;  ///< ".json"; empty where any is allowed
-};
-void check_output_names(const std::vector<OutputName>& outputs,
-                        const std::vector<std::string>& inputs);
-
 }  // namespace clothbrdf
