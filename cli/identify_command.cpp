@@ -80,9 +80,10 @@ void check_outputs(const IdentifyCommandOptions& options) {
     const std::string ending = std::filesystem::path(file).extension().string();
     const bool fits = options.sweep ? ending == ".csv" || ending == ".png" : ending == ".json";
     if (!fits) {
-      const char* const allowed = options.sweep ? ".csv (the map) or .png (its picture)" : ".json";
-      throw InputError("--output: " + file + ": the ending '" + ending +
-                       "' is not allowed: " + allowed);
+      std::string message = "--output: ";
+      message.append(file).append(": the ending '").append(ending).append("' is not allowed: ");
+      throw InputError(message +
+                       (options.sweep ? ".csv (the map) or .png (its picture)" : ".json"));
     }
     outputs.push_back({"--output", file, ending});
   }

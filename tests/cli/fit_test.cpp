@@ -15,7 +15,7 @@ using nlohmann::json;
 
 // Of silk, small, with the conventions given: a second's work.
 std::string silk_table(const TemporaryFolder& folder) {
-  const std::string file = (folder / "silk.exr").string();
+  std::string file = (folder / "silk.exr").string();
   output_of({"tabulate", preset("silk").string(), "-o", file, "--grid", "halfdiff3d:12x12x24"});
   return file;
 }

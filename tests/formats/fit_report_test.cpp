@@ -23,7 +23,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 // The report, read as strictly as our inputs are; it follows its schema.
 json checked(const std::string& text, const char* schema) {
   CAPTURE(text);
-  const json report = parse_json(text, "report.json");
+  json report = parse_json(text, "report.json");
   CHECK_NOTHROW(check_against_schema(report, schema, "report.json"));
   CHECK(text.starts_with("{\n  \"$schema\": \"../data-schemas/" + std::string(schema) + "\""));
   CHECK(text.find("null") == std::string::npos);
@@ -46,7 +46,8 @@ void visit_schemas(const json& schema, const std::string& pointer, const Visit& 
   for (const char* key : {"properties", "definitions"}) {
     const json children = schema.value(key, json::object());
     for (const auto& [name, child] : children.items()) {
-      visit_schemas(child, pointer + "/" + key + "/" + name, visit);
+      visit_schemas(child, std::string(pointer).append("/").append(key).append("/").append(name),
+                    visit);
     }
   }
   for (const char* key : {"items", "additionalProperties"}) {
