@@ -11,6 +11,7 @@
 #include "fit/equivalents.h"
 #include "fit/misfit.h"
 #include "fit/parallel.h"
+#include "fit/remedies.h"
 #include "fit/residual_regions.h"
 #include "fit/search.h"
 #include "fit/settle.h"
@@ -22,10 +23,6 @@
 
 namespace clothbrdf {
 namespace {
-
-// Where a search looks: so many distinct cos_theta_d and groups of cells.
-constexpr std::size_t kSearchedX = 16;
-constexpr std::size_t kSearchedGroups = 400;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -68,8 +65,7 @@ class TableFit {
       : table_(table),
         options_(options),
         workers_(workers),
-        with_phi_h_(!table.spec().has_grid() ||
-                    table.spec().grid().kind != GridKind::kHalfDifference3d),
+        with_phi_h_(has_phi_h(table.spec())),
         set_(options, table.spec().channels.size(), with_phi_h_) {}
 
   FitReport run() {
