@@ -150,7 +150,7 @@ class Identifier {
     for (const auto& [a, b] : table.pairs()) {
       const double chi2 =
           std::max(0.0, table.at(a, b).cost - truth.solution.cost) / (noise_ * noise_);
-      report_.layers.fits.push_back({a, b, chi2, chi2 > kToldApart});
+      report_.layers.fits.push_back({a, b, chi2, chi2 > kToldApart, false});
     }
   }
 
