@@ -99,10 +99,8 @@ Table read_merl(const std::filesystem::path& path) {
   }
   TableSpec spec{halfdiff3d(), rgb_channels(), {}, {}};
   std::vector<double> values(3 * kCells);
-  std::vector<std::uint8_t> valid(kCells);
-  for (std::size_t cell = 0; cell < kCells; ++cell) {
-    valid[cell] = spec.grid().any_above_horizon(cell) ? 1 : 0;
-  }
+  std::vector<std::uint8_t> valid = spec.grid().above_horizon(CellPart::kAny);
+  const std::vector<std::uint8_t> nodes = spec.grid().above_horizon(CellPart::kNode);
   std::vector<std::uint8_t> all_zero(kCells, 1);
   std::vector<double> plane(kCells);
   const std::size_t columns = spec.column_count();
@@ -117,7 +115,7 @@ Table read_merl(const std::filesystem::path& path) {
   }
   // Point values are 0 where the cell's centre is below the horizon: nothing was said of them.
   for (std::size_t cell = 0; cell < kCells; ++cell) {
-    if (all_zero[cell] != 0 && !spec.grid().node_above_horizon(cell)) valid[cell] = 0;
+    if (all_zero[cell] != 0 && nodes[cell] == 0) valid[cell] = 0;
   }
   mask_not_measured(spec, values, valid);
   return {std::move(spec), std::move(values), std::move(valid)};

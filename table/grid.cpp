@@ -61,6 +61,35 @@ Grid halfdiff(GridKind kind, const std::vector<int>& sizes, double phi_d_range_d
   return grid;
 }
 
+// Where along an axis a cell is asked for the sky: at its node, or where it sees most of it. That
+// is at the lowest theta, and at the phi_d nearest to a right angle.
+SinCos<double> sight(const Grid& grid, std::size_t axis, int k, CellPart part) {
+  const Axis& a = grid.axes[axis];
+  if (part == CellPart::kNode) return sincosd(a.node_deg(k));
+  if (grid.kind == GridKind::kInOut || axis + 1 < grid.axes.size()) return sincosd(a.edge_deg(k));
+  SinCos<double> best{0, 1};
+  for (const double right_angle : {90.0, 270.0}) {
+    const SinCos<double> phi = sincosd(std::clamp(right_angle, a.edge_deg(k), a.edge_deg(k + 1)));
+    if (std::abs(phi.cos) < best.cos) best = {phi.sin, std::abs(phi.cos)};
+  }
+  return best;
+}
+
+// By the sights along the first axis and the last two.
+bool seen(GridKind kind, const SinCos<double>& first, const SinCos<double>& second,
+          const SinCos<double>& last) {
+  if (kind == GridKind::kInOut) return first.cos > 0 && second.cos > 0;
+  const IncidenceCosines<double> c = incidence_cosines(first, second, last.cos);
+  return c.i > 0 && c.o > 0;
+}
+
+bool cell_above_horizon(const Grid& grid, std::size_t cell, CellPart part) {
+  const std::array<int, 4> index = grid.indices(cell);
+  const auto at = [&](std::size_t axis) { return sight(grid, axis, index[axis], part); };
+  const std::size_t last = grid.axes.size() - 1;
+  return seen(grid.kind, at(0), at(last - 1), at(last));
+}
+
 }  // namespace
 
 std::size_t Grid::cell_count() const {
@@ -101,29 +130,33 @@ Directions Grid::directions(std::size_t cell) const {
 }
 
 bool Grid::node_above_horizon(std::size_t cell) const {
-  const std::array<int, 4> index = indices(cell);
-  const auto node = [&](std::size_t axis) { return sincosd(axes[axis].node_deg(index[axis])); };
-  if (kind == GridKind::kInOut) return node(0).cos > 0 && node(2).cos > 0;
-  const std::size_t d = axes.size() - 2;
-  const IncidenceCosines<double> c = incidence_cosines(node(0), node(d), node(d + 1).cos);
-  return c.i > 0 && c.o > 0;
+  return cell_above_horizon(*this, cell, CellPart::kNode);
 }
 
 bool Grid::any_above_horizon(std::size_t cell) const {
-  const std::array<int, 4> index = indices(cell);
-  const auto edge = [&](std::size_t axis, int offset) {
-    return axes[axis].edge_deg(index[axis] + offset);
+  return cell_above_horizon(*this, cell, CellPart::kAny);
+}
+
+std::vector<std::uint8_t> Grid::above_horizon(CellPart part) const {
+  const auto sights = [&](std::size_t axis) {
+    std::vector<SinCos<double>> result;
+    for (int k = 0; k < axes[axis].size; ++k) result.push_back(sight(*this, axis, k, part));
+    return result;
   };
-  if (kind == GridKind::kInOut) return edge(0, 0) < 90 && edge(2, 0) < 90;
-  // The lowest theta_h and theta_d and the phi_d nearest to a right angle see most of the sky.
-  const std::size_t d = axes.size() - 2;
-  const double low = edge(d + 1, 0);
-  const double high = edge(d + 1, 1);
-  double best = 1;
-  for (const double right_angle : {90.0, 270.0}) {
-    best = std::min(best, std::abs(sincosd(std::clamp(right_angle, low, high)).cos));
+  const std::vector<SinCos<double>> first = sights(0);
+  const std::vector<SinCos<double>> second = sights(axes.size() - 2);
+  const std::vector<SinCos<double>> last = sights(axes.size() - 1);
+  const std::size_t rows_of_first = row_count() / first.size();
+  std::vector<std::uint8_t> above;
+  above.reserve(cell_count());
+  for (std::size_t row = 0; row < row_count(); ++row) {
+    for (const SinCos<double>& theta : second) {
+      for (const SinCos<double>& phi : last) {
+        above.push_back(seen(kind, first[row / rows_of_first], theta, phi) ? 1 : 0);
+      }
+    }
   }
-  return incidence_cosines(sincosd(edge(0, 0)), sincosd(edge(d, 0)), best).i > 0;
+  return above;
 }
 
 std::array<double, 4> Grid::angles(const Vector3<double>& wi, const Vector3<double>& wo) const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,6 +16,12 @@ enum class GridKind {
   kHalfDifference3d,  ///< theta_h, theta_d, phi_d: the mean over phi_h
   kHalfDifference4d,  ///< theta_h, phi_h, theta_d, phi_d
   kInOut,             ///< theta_i, phi_i, theta_o, phi_o
+};
+
+/// What of a cell is meant.
+enum class CellPart {
+  kNode,  ///< where its value is taken
+  kAny,   ///< any part of it
 };
 
 /// Light and eye as unit vectors of the cloth frame.
@@ -52,6 +59,9 @@ struct Grid {
 
   /// Whether any part of the cell is.
   bool any_above_horizon(std::size_t cell) const;
+
+  /// The same for all cells: 1 or 0 each.
+  std::vector<std::uint8_t> above_horizon(CellPart part) const;
 
   /// The angles of a pair of unit vectors on each axis, degrees; 0 beyond the last one. phi_d
   /// beyond an axis that ends at 180 degrees is folded by reciprocity.

@@ -109,13 +109,8 @@ double Table::value(std::size_t cell, std::size_t channel) const {
 }
 
 std::vector<std::uint8_t> cells_above_horizon(const TableSpec& spec) {
-  std::vector<std::uint8_t> valid(spec.cell_count(), 1);
-  if (!spec.has_grid()) return valid;
-  for (std::size_t cell = 0; cell < valid.size(); ++cell) {
-    valid[cell] = spec.cells.average ? spec.grid().any_above_horizon(cell)
-                                     : spec.grid().node_above_horizon(cell);
-  }
-  return valid;
+  if (!spec.has_grid()) return std::vector<std::uint8_t>(spec.cell_count(), 1);
+  return spec.grid().above_horizon(spec.cells.average ? CellPart::kAny : CellPart::kNode);
 }
 
 void mask_not_measured(const TableSpec& spec, std::span<const double> values,
