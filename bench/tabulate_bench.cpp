@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/fit_bench.h"
 #include "bench/peak.h"
 #include "formats/material_json.h"
 #include "model/degrees.h"
@@ -244,6 +245,7 @@ int main(int argc, char** argv) {
   benchmark::AddCustomContext("compiler", "g++ " __VERSION__);
 #endif
   clothbrdf::register_all();
+  clothbrdf::register_fit_benchmarks();
   benchmark::RunSpecifiedBenchmarks();
   benchmark::Shutdown();
   return 0;

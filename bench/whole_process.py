@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
 """Times the program as a user meets it, adds what tabulate_bench measured, and writes both down; bench/run calls it."""
 
+import array
 import collections
 import datetime
 import json
 import os
 import pathlib
 import platform
+import random
 import statistics
 import subprocess
 import sys
@@ -104,6 +106,37 @@ def whole_processes(program, folder):
     return figures
 
 
+def with_noise(source, target, relative):
+    """A MERL file with independent Gaussian noise on every value."""
+    content = source.read_bytes()
+    values = array.array("d", content[12:])
+    gauss = random.Random(1).gauss
+    for k, value in enumerate(values):
+        if value > 0:
+            values[k] = value * (1 + relative * gauss(0, 1))
+    target.write_bytes(content[:12] + values.tobytes())
+
+
+def fits(program, folder):
+    """Fits of a full MERL table with 1 % noise, as whole processes."""
+    clean, table, found = folder / "clean.binary", folder / "noisy.binary", folder / "found.json"
+    run(program, "tabulate", SHOT_SILK, "-o", str(clean))
+    with_noise(clean, table, 0.01)
+    clean.unlink()
+    fit = [program, "fit", str(table)]
+    given = ["--reflectance", "microfacet", "--paths", "all"]
+    warm = [*fit, *given, "--start", str(found), "--fix", "layers"]
+    blind = [run(*fit, *given, "--material", str(found)) for _ in range(3)]
+    figures = {
+        "fit, blind start": {"value": statistics.median(b.seconds for b in blind), "unit": "s", "limit": 5},
+        "fit, all defaults": {"value": run(*fit).seconds, "unit": "s"},
+        "fit, warm start": {"value": statistics.median(run(*warm).seconds for _ in range(5)), "unit": "s", "limit": 0.2},
+        "fit, peak memory": {"value": max(b.peak_mb for b in blind), "unit": "MB", "limit": 300},
+    }
+    table.unlink()
+    return figures
+
+
 def kernels(report):
     """{name: microseconds of processor time, million cells per second} from Google Benchmark's JSON."""
     runs = collections.defaultdict(list)
@@ -112,7 +145,7 @@ def kernels(report):
             runs["/".join(row["name"].split("/")[:2])].append(row)
     result = {}
     for name, rows in runs.items():
-        clock = "real_time" if name.startswith("threads_") else "cpu_time"
+        clock = "real_time" if name.startswith(("threads_", "fit/")) else "cpu_time"
         times = [row[clock] for row in rows]
         result[name] = {"median_us": round(statistics.median(times), 1), "min_us": round(min(times), 1)}
         if "cells" in rows[0]:
@@ -144,6 +177,8 @@ def kernel_figures(measured):
         "batch, share of memory writes": {
             "value": 100 * 12 * rate(f"{fastest}/{single}") / rate("peak/memory_writes"), "unit": "%"},
     }
+    figures["fit of all cells / reduced rows"] = {
+        "value": measured["fit/all_cells"]["median_us"] / measured["fit/reduced_rows"]["median_us"], "unit": ""}
     for grid in ("inout", "average"):
         one, two = (measured[f"threads_{grid}/{threads}"]["median_us"] for threads in (1, 2))
         figures[f"two threads / one, {grid}"] = {"value": one / two, "unit": "", "at_least": 1.8}
@@ -204,7 +239,8 @@ def main():
     compute = {"value": measured["compute/silk.binary"]["median_us"] / 1e3, "unit": "ms", "limit": 10}
     with tempfile.TemporaryDirectory(dir=build / "bench") as folder:
         figures = {"computing silk.binary, one core": compute, **kernel_figures(measured),
-                   **whole_processes(str(build / "clothbrdf"), pathlib.Path(folder))}
+                   **whole_processes(str(build / "clothbrdf"), pathlib.Path(folder)),
+                   **fits(str(build / "clothbrdf"), pathlib.Path(folder))}
     for figure in figures.values():
         if "limit" in figure:
             figure["met"] = figure["value"] <= figure["limit"]
