@@ -20,4 +20,7 @@ Image arrange(const std::vector<std::vector<Panel>>& rows);
 /// lies outside is cut off.
 void draw_text(Image& image, int x, int y, int scale, const std::string& text, const Rgb& colour);
 
+/// Pixels from the start of a line of text to where another would follow it.
+int text_width(int scale, const std::string& text);
+
 }  // namespace clothbrdf
