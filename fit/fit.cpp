@@ -6,6 +6,7 @@
 #include <limits>
 #include <memory>
 
+#include "fit/estimate.h"
 #include "fit/estimates.h"
 #include "fit/misfit.h"
 #include "fit/one_yarn.h"
@@ -126,6 +127,7 @@ class TableFit {
     const Observations few = thinned(observations, kSearchedX, kSearchedGroups);
     const ValueSource few_source = table_values(table_, few);
     const Rows few_rows = make_rows(few, few_source, first, nullptr, true, Workers(1));
+    const Material estimate = estimate_from_table(few, few_source, set_);
     for (const Paths paths : options_.paths) {
       if (workers_.progress != nullptr) {
         const auto pairs = LayerTable(layer_range(set_, options_, 0),
@@ -139,11 +141,12 @@ class TableFit {
             pairs - 1 + static_cast<std::size_t>(options_.start ? 1 : options_.starts), "fits");
       }
       const Misfit searched(few, few_rows, kSearching, Workers(1));
-      ConventionResult result{shared,
-                              reflectance,
-                              paths,
-                              search(searched, set_, options_, reflectance, paths, workers_),
-                              {}};
+      ConventionResult result{
+          shared,
+          reflectance,
+          paths,
+          search(searched, set_, options_, estimate, reflectance, paths, workers_),
+          {}};
       const auto [warp, weft] = result.search.layers.best();
       result.fit.solution = result.search.layers.at(warp, weft);
       result.fit.rows = rows;

@@ -25,13 +25,26 @@ constexpr std::size_t kPromising = 6;
 // [0, 1), the same on every platform.
 double unit(std::mt19937_64& engine) { return static_cast<double>(engine() >> 11) * 0x1p-53; }
 
-Material scattered_start(const ParameterSet& set, const FitOptions& options, std::uint64_t number) {
+// Number 0 is the estimate itself; of the others every second one keeps its axes and absorption,
+// up to a factor.
+Material scattered_start(const ParameterSet& set, const FitOptions& options,
+                         const Material& estimate, std::uint64_t number) {
   std::mt19937_64 engine(options.seed * 0x9e3779b97f4a7c15ULL + number);
-  Material material = set.defaults();
+  Material material = estimate;
+  const auto near_estimate = [&](const FitParameter& p) {
+    return number % 2 == 1 &&
+           (p.column == kAlong || p.column == kAcross || p.column == kAbsorption);
+  };
+  const double reach = std::log(3.0);
   for (std::size_t i = 0; i < set.parameters().size(); ++i) {
     const double u = unit(engine);
-    if (set.has_start(i) || set.state(i) != ParameterSet::State::kFree) continue;
+    if (number == 0 || set.has_start(i) || set.state(i) != ParameterSet::State::kFree) continue;
     const FitParameter& p = set.parameters()[i];
+    if (near_estimate(p)) {
+      const double value = parameter_value(estimate, p) * std::exp(reach * (2 * u - 1));
+      set_parameter(material, p, std::clamp(value, p.lowest, p.highest));
+      continue;
+    }
     const double low = p.to_coordinate(p.scatter_low);
     const double high = p.to_coordinate(p.scatter_high);
     set_parameter(material, p, p.to_value(low + (high - low) * u));
@@ -206,7 +219,7 @@ std::pair<int, int> LayerTable::best() const {
 }
 
 Search search(const Misfit& misfit, const ParameterSet& set, const FitOptions& options,
-              Reflectance reflectance, Paths paths, Workers workers) {
+              const Material& estimate, Reflectance reflectance, Paths paths, Workers workers) {
   Search result{
       LayerTable(layer_range(set, options, 0), layer_range(set, options, 1), set.layers_tied()),
       0,
@@ -219,7 +232,7 @@ Search search(const Misfit& misfit, const ParameterSet& set, const FitOptions& o
 
   std::vector<Solution> ends(starts);
   tbb::parallel_for(std::size_t{0}, starts, [&](std::size_t k) {
-    Material start = asked ? set.defaults() : scattered_start(set, options, k);
+    Material start = asked ? set.defaults() : scattered_start(set, options, estimate, k);
     start.reflectance = reflectance;
     start.paths = paths;
     const auto inside = [&](int layers, std::size_t yarn) {

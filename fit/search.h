@@ -55,11 +55,12 @@ struct Search {
   std::vector<Optimum> optima;  ///< lowest cost first; chi2 is the cost here
 };
 
-/// A fit without a guess: from scattered starts (or from the one that was asked for), with layer
-/// counts of their own, each the best of which then looks for better counts beside its own; then
-/// every pair of counts, from its best neighbour. The same result for any number of threads.
+/// A fit without a guess: from the estimate and from scattered starts, half of them around it (or
+/// from the one that was asked for alone), with layer counts of their own, each the best of which
+/// then looks for better counts beside its own; then every pair of counts, from its best neighbour.
+/// The same result for any number of threads.
 Search search(const Misfit& misfit, const ParameterSet& set, const FitOptions& options,
-              Reflectance reflectance, Paths paths, Workers workers);
+              const Material& estimate, Reflectance reflectance, Paths paths, Workers workers);
 
 /// Every pair of counts that the table does not have, from the best outward, each from its best
 /// neighbour and from the best of all. Counts into the workers' progress.
