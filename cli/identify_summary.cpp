@@ -76,6 +76,11 @@ std::string identify_summary(const std::string& file, const IdentifyReport& repo
   text += parameters_text(report) + singular_values_text(report);
   text += blind_text(report.blind, report.condition) + layers_text(report.layers);
   text += equivalents_text(report.equivalents) + profiles_text(report);
+  if (!report.tried.empty()) {
+    std::string tried;
+    for (const std::string& other : report.tried) tried += (tried.empty() ? "" : "; ") + other;
+    text += labelled("tried", "what other measurements would settle: " + tried);
+  }
   return text + labelled("time", short_number(report.seconds, 3) + " s");
 }
 

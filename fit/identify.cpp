@@ -48,18 +48,20 @@ class Identifier {
              const std::vector<unsigned char>& valid, const IdentifyOptions& options,
              Workers workers)
       : spec_(spec),
-        truth_(material),
+        material_(material),
         valid_(valid),
+        original_(options.fit),
         options_(options),
+        truth_(without_effects(spec, material, options_.fit)),
         workers_(workers),
         noise_(options.fit.noise.value_or(kDefaultNoise)),
-        set_(identified_set(spec, material, options.fit)),
+        set_(identified_set(spec, truth_, options_.fit)),
         observations_(observe(spec, material.reflectance, workers)),
-        model_(model_values(observations_, material, kExact, workers)) {}
+        model_(model_values(observations_, truth_, kExact, workers)) {}
 
   IdentifyReport run() {
     const auto started = std::chrono::steady_clock::now();
-    report_.material = truth_;
+    report_.material = material_;
     report_.grid = spec_.has_grid() ? spec_.grid().description()
                                     : std::to_string(spec_.pairs().size()) + " pairs";
     report_.cell_averages = spec_.cells.average;
@@ -226,21 +228,23 @@ class Identifier {
     }
     if (!needed) return;
     const std::vector<Remedy> remedies =
-        try_remedies(spec_, truth_, options_.fit, noise_, workers_);
+        try_remedies(spec_, material_, original_, noise_, workers_);
+    for (const Remedy& remedy : remedies) report_.tried.push_back(remedy.words);
     for (std::size_t i = 0; i < report_.parameters.size(); ++i) {
       VerifiedParameter& p = report_.parameters[i];
       if (p.verdict != Verdict::kWeak && p.verdict != Verdict::kNotIdentifiable) continue;
       const auto settles = std::find_if(remedies.begin(), remedies.end(),
                                         [&](const Remedy& remedy) { return remedy.settles[i]; });
-      p.remedy = settles != remedies.end() ? settles->words
-                                           : "none of those tried: " + remedy_list(remedies);
+      p.remedy = settles != remedies.end() ? settles->words : "nothing that was tried";
     }
   }
 
   const TableSpec& spec_;
-  const Material& truth_;
+  const Material& material_;
   const std::vector<unsigned char>& valid_;
-  const IdentifyOptions& options_;
+  const FitOptions& original_;
+  IdentifyOptions options_;  // and what is known of a table without some effects
+  Material truth_;           // what the table shows of the material
   Workers workers_;
   double noise_;
   ParameterSet set_;

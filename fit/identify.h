@@ -10,8 +10,9 @@
 namespace clothbrdf {
 
 /// What a table of the given samples and cell rule would reveal of the material, predicted from
-/// exact derivatives and verified by refits of noisy tables. `valid`: which cells are measured;
-/// empty for all above the horizon.
+/// exact derivatives and verified by refits of noisy tables. Effects that are off in the spec's
+/// provenance are known to be: their weights, and with `internal` the layers, are fixed. `valid`:
+/// which cells are measured; empty for all above the horizon.
 IdentifyReport identify(const TableSpec& spec, const Material& material,
                         const std::vector<unsigned char>& valid, const IdentifyOptions& options,
                         Workers workers);

@@ -10,8 +10,10 @@
 namespace clothbrdf {
 namespace {
 
-std::vector<bool> settled(const TableSpec& spec, const Material& material,
-                          const FitOptions& options, double noise, Workers workers) {
+std::vector<bool> settled(const TableSpec& spec, const Material& whole, const FitOptions& given,
+                          double noise, Workers workers) {
+  FitOptions options = given;
+  const Material material = without_effects(spec, whole, options);
   const ParameterSet set = identified_set(spec, material, options);
   const Observations observations = observe(spec, material.reflectance, workers);
   const ModelValues model = model_values(observations, material, kExact, workers);
@@ -32,6 +34,20 @@ std::vector<bool> settled(const TableSpec& spec, const Material& material,
 }
 
 }  // namespace
+
+Material without_effects(const TableSpec& spec, const Material& material, FitOptions& options) {
+  const Effects& effects = spec.provenance.effects;
+  const auto fix = [&](const std::string& name) {
+    options.wishes.push_back({ParameterWish::Kind::kFix, name, {}, {}, {}});
+  };
+  if (!effects.specular) fix("weights.specular");
+  if (!effects.diffuse) fix("weights.diffuse");
+  if (!effects.internal) {
+    fix("weights.internal");
+    fix("layers");
+  }
+  return apply_effects(material, effects);
+}
 
 bool has_phi_h(const TableSpec& spec) {
   return !spec.has_grid() || spec.grid().kind != GridKind::kHalfDifference3d;
@@ -70,6 +86,11 @@ std::vector<Remedy> try_remedies(const TableSpec& spec, const Material& material
     with_phi_h.cells = {};
     add("a table with phi_h, as " + with_phi_h.grid().description(), with_phi_h, options, noise);
   }
+  if (spec.provenance.effects != Effects{}) {
+    TableSpec whole = spec;
+    whole.provenance.effects = {};
+    add("a table with all components", whole, options, noise);
+  }
   constexpr double kLessNoise = 10;
   add("a tenth of the noise", spec, options, noise / kLessNoise);
   const auto given = [&](const std::string& name, const std::string& words) {
@@ -87,12 +108,6 @@ std::vector<Remedy> try_remedies(const TableSpec& spec, const Material& material
     add("knowing that both yarns are equal", spec, tied, noise);
   }
   return remedies;
-}
-
-std::string remedy_list(const std::vector<Remedy>& remedies) {
-  std::string text;
-  for (const Remedy& remedy : remedies) text += (text.empty() ? "" : "; ") + remedy.words;
-  return text;
 }
 
 }  // namespace clothbrdf

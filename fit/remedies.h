@@ -19,6 +19,10 @@ struct Remedy {
 /// Whether a table can tell the rotation of a cloth.
 bool has_phi_h(const TableSpec& spec);
 
+/// What a table without some effects shows of a material; what is known then (weights of 0, no
+/// layers) is fixed in the options.
+Material without_effects(const TableSpec& spec, const Material& material, FitOptions& options);
+
 /// What is free where a table of the material is looked at: what the options free, less what lies
 /// on its bound, where no derivative tells of both sides.
 ParameterSet identified_set(const TableSpec& spec, const Material& material,
@@ -29,8 +33,5 @@ bool lies_at_bound(const ParameterSet& set, std::size_t parameter, const Materia
 /// predicted standard errors; the least effort first.
 std::vector<Remedy> try_remedies(const TableSpec& spec, const Material& material,
                                  const FitOptions& options, double noise, Workers workers);
-
-/// All that was tried, for people.
-std::string remedy_list(const std::vector<Remedy>& remedies);
 
 }  // namespace clothbrdf

@@ -184,6 +184,7 @@ struct IdentifyReport {
   int refits = 0;
   int refits_converged = 0;
   std::vector<Profile> profiles;
+  std::vector<std::string> tried;  ///< other measurements, whether or not they settle anything
   double seconds = 0;
 };
 

@@ -190,6 +190,7 @@ std::string identify_report_to_json(const IdentifyReport& report) {
   json["layers"] = layers_json(report.layers);
   json.update({{"refits", report.refits}, {"refits_converged", report.refits_converged}});
   json["profiles"] = array_of(report.profiles, profile_json);
+  json["tried"] = report.tried;
   put(json, "seconds", report.seconds);
   return laid_out(json);
 }
