@@ -8,6 +8,7 @@
 #include "model/layers.h"
 #include "support/errors.h"
 #include "tests/catch.h"
+#include "tests/support/document_blocks.h"
 #include "tests/support/temporary_folder.h"
 
 namespace clothbrdf::test {
@@ -63,6 +64,27 @@ TEST_CASE("every key of a fit file reaches its field") {
   CHECK(options.loss == Loss::kCauchy);
   CHECK(options.starts == 7);
   CHECK(options.seed == 9007199254740991U);
+}
+
+TEST_CASE("the fit file of docs/fitting.md is read as the page says") {
+  const std::vector<std::string> files =
+      blocks_of(std::filesystem::path(CLOTHBRDF_SOURCE_DIR) / "docs" / "fitting.md", "json");
+  REQUIRE(files.size() == 1);
+  const FitOptions options = parsed(files[0]);
+  const std::vector<ParameterWish> wishes = {
+      {Kind::kFree, "refractive_index", {}, 1.5, 1.6},
+      {Kind::kStart, "refractive_index", 1.55, {}, {}},
+      {Kind::kFree, "scatter", {}, 0.0, 0.3},
+      {Kind::kFix, "warp_fraction", 0.875, {}, {}},
+      {Kind::kTie, "weft.refractive_index", {}, {}, {}},
+      {Kind::kStart, "warp.lobe_axes.0", 0.06, {}, {}}};
+  CHECK(options.wishes == wishes);
+  CHECK(options.fewest_layers == 2);
+  CHECK(options.most_layers == 6);
+  CHECK(options.reflectances == std::vector{Reflectance::kMicrofacet});
+  CHECK(options.paths == std::vector{Paths::kAll});
+  CHECK(options.noise == 0.01);
+  CHECK(options.loss == Loss::kHuber);
 }
 
 TEST_CASE("what a fit file leaves out keeps its default, and both stands for each convention") {
