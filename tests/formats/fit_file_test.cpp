@@ -71,13 +71,12 @@ TEST_CASE("the fit file of docs/fitting.md is read as the page says") {
       blocks_of(std::filesystem::path(CLOTHBRDF_SOURCE_DIR) / "docs" / "fitting.md", "json");
   REQUIRE(files.size() == 1);
   const FitOptions options = parsed(files[0]);
-  const std::vector<ParameterWish> wishes = {
-      {Kind::kFree, "refractive_index", {}, 1.5, 1.6},
-      {Kind::kStart, "refractive_index", 1.55, {}, {}},
-      {Kind::kFree, "scatter", {}, 0.0, 0.3},
-      {Kind::kFix, "warp_fraction", 0.875, {}, {}},
-      {Kind::kTie, "weft.refractive_index", {}, {}, {}},
-      {Kind::kStart, "warp.lobe_axes.0", 0.06, {}, {}}};
+  const std::vector<ParameterWish> wishes = {{Kind::kFree, "refractive_index", {}, 1.5, 1.6},
+                                             {Kind::kStart, "refractive_index", 1.55, {}, {}},
+                                             {Kind::kFree, "scatter", {}, 0.0, 0.3},
+                                             {Kind::kFix, "warp_fraction", 0.875, {}, {}},
+                                             {Kind::kTie, "weft.refractive_index", {}, {}, {}},
+                                             {Kind::kStart, "warp.lobe_axes.0", 0.06, {}, {}}};
   CHECK(options.wishes == wishes);
   CHECK(options.fewest_layers == 2);
   CHECK(options.most_layers == 6);
