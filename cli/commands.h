@@ -13,5 +13,7 @@ void add_preview_command(CLI::App& program);
 void add_check_command(CLI::App& program);
 void add_compare_command(CLI::App& program);
 void add_convert_command(CLI::App& program);
+void add_fit_command(CLI::App& program);
+void add_identify_command(CLI::App& program);
 
 }  // namespace clothbrdf

@@ -67,7 +67,7 @@ int run(int argc, char** argv) {
   std::ios::sync_with_stdio(false);
 
   CLI::App program(
-      "Turns a description of woven cloth into reflectance tables.\n"
+      "Turns a description of woven cloth into reflectance tables, and back.\n"
       "Example: clothbrdf tabulate materials/silk.json -o silk.binary -o silk.exr",
       "clothbrdf");
   program.set_version_flag("--version", std::string("clothbrdf ") + clothbrdf::kVersion);
@@ -80,6 +80,8 @@ int run(int argc, char** argv) {
   clothbrdf::add_check_command(program);
   clothbrdf::add_compare_command(program);
   clothbrdf::add_convert_command(program);
+  clothbrdf::add_fit_command(program);
+  clothbrdf::add_identify_command(program);
 
   try {
     program.parse(argc, argv);

@@ -3,7 +3,6 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <span>
 #include <string>
 
 #include "cli/commands.h"
@@ -102,7 +101,7 @@ void dye(Material& material, const YarnColours& colours) {
 void write_material(const Material& material, const std::filesystem::path& path) {
   const std::string text = material_to_json(material);
   AtomicFile file(path);
-  file.write_at(0, std::as_bytes(std::span(text)));
+  write_text(text, file);
   file.commit();
 }
 

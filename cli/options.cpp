@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <span>
 #include <sstream>
 
 #include "model/parameters.h"
@@ -124,6 +125,10 @@ std::string with_commas(std::uint64_t number) {
 }
 
 Table read_table(const std::string& file) { return format_for(file).read(file); }
+
+void write_text(const std::string& text, AtomicFile& file) {
+  file.write_at(0, std::as_bytes(std::span(text)));
+}
 
 std::string effects_text(const Effects& effects) {
   std::string text;

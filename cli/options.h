@@ -9,6 +9,7 @@
 #include "formats/format.h"
 #include "model/effects.h"
 #include "preview/sheet.h"
+#include "support/atomic_file.h"
 #include "table/table_spec.h"
 
 namespace clothbrdf {
@@ -56,6 +57,9 @@ std::string with_commas(std::uint64_t number);
 
 /// Reads a table of any format.
 Table read_table(const std::string& file);
+
+/// All of a file's content; the caller commits.
+void write_text(const std::string& text, AtomicFile& file);
 
 /// "specular, diffuse", for people.
 std::string effects_text(const Effects& effects);

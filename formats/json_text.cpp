@@ -221,6 +221,47 @@ std::string one_line(std::string_view text, std::size_t longest) {
   return cut ? line + "..." : line;
 }
 
+namespace {
+
+using Ordered = nlohmann::ordered_json;
+
+std::string on_one_line(const Ordered& value) {
+  if (!value.is_structured()) return value.dump(-1, ' ', false, Ordered::error_handler_t::replace);
+  const bool object = value.is_object();
+  std::string text;
+  for (const auto& [key, child] : value.items()) {
+    if (!text.empty()) text += ", ";
+    if (object) text += on_one_line(Ordered(key)) + ": ";
+    text += on_one_line(child);
+  }
+  return object ? "{" + text + "}" : "[" + text + "]";
+}
+
+// `column`: where the value begins on its line.
+std::string laid_out(const Ordered& value, std::size_t indent, std::size_t column) {
+  constexpr std::size_t kColumns = 100;
+  std::string line = on_one_line(value);
+  // One more for the comma. A whole file is broken up, however short.
+  const bool fits = line.size() + column + 1 <= kColumns && indent > 0;
+  if (!value.is_structured() || value.empty() || fits) return line;
+  const bool object = value.is_object();
+  const std::string start = "\n" + std::string(indent + 2, ' ');
+  std::string text;
+  for (const auto& [key, child] : value.items()) {
+    const std::string name = object ? on_one_line(Ordered(key)) + ": " : "";
+    if (!text.empty()) text += ',';
+    text += start;
+    text += name;
+    text += laid_out(child, indent + 2, indent + 2 + name.size());
+  }
+  text += "\n" + std::string(indent, ' ');
+  return object ? "{" + text + "}" : "[" + text + "]";
+}
+
+}  // namespace
+
+std::string laid_out(const nlohmann::ordered_json& value) { return laid_out(value, 0, 0) + "\n"; }
+
 std::string pointer_step(std::string_view key) {
   std::string escaped = "/";
   for (const char c : key.substr(0, 200)) {

@@ -35,6 +35,10 @@ nlohmann::json parse_json(std::string_view text, const std::string& file_name);
 /// "...".
 std::string one_line(std::string_view text, std::size_t longest = 60);
 
+/// The text of a file that holds `value`: what fits goes on a line of its own, the rest is broken
+/// up. Bytes that are no UTF-8 are replaced, so that what is written can be read.
+std::string laid_out(const nlohmann::ordered_json& value);
+
 /// A step of a JSON pointer, "/name" (RFC 6901), fit for a message.
 std::string pointer_step(std::string_view key);
 
