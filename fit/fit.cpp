@@ -1,6 +1,8 @@
 #include "fit/fit.h"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -59,6 +61,13 @@ struct ConventionResult {
   Rows rows;
   double chi2 = kInfinity;  // not yet over the noise
 };
+
+std::string short_text(double value) {
+  std::array<char, 32> text{};
+  const auto end =
+      std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, 3);
+  return {text.data(), end.ptr};
+}
 
 class TableFit {
  public:
@@ -185,7 +194,7 @@ class TableFit {
       const Misfit misfit(observations, result.rows, kExact, workers_);
       const Material start = result.solution.start;
       const int iterations = result.solution.iterations;
-      result.solution = solve(misfit, set_, before, {}, workers_);
+      result.solution = solve(misfit, set_, before, to_the_end(result.rows, noise), workers_);
       result.solution.start = start;
       result.solution.iterations += round > 0 ? iterations : 0;
       result.chi2 = result.rows.constant + result.solution.cost;
@@ -195,6 +204,14 @@ class TableFit {
   }
   // Standard errors by which a further round may still move a parameter.
   static constexpr double kSettled = 1e-3;
+
+  // Until a step changes chi2 by next to nothing: of the order of kSettled squared. Before there is
+  // an estimate of the noise, the weights are about to change anyway.
+  static SolveLimits to_the_end(const Rows& rows, double noise) {
+    if (!(noise > 0)) return {.function_tolerance = 1e-6, .rounds = 1};
+    const double rows_cost = static_cast<double>(rows.row_count()) * noise * noise;
+    return {.function_tolerance = kSettled * kSettled * noise * noise / rows_cost};
+  }
 
   double degrees_of_freedom(const Rows& rows) const {
     return std::max(1.0,
@@ -247,19 +264,69 @@ class TableFit {
     }
   }
 
+  // A cloth of one yarn, where that fits as well: the simpler one is reported, and what sets the
+  // yarns apart shows as what cannot be told.
+  void try_one_yarn(ConventionResult& chosen) {
+    FitOptions options = options_;
+    options.wishes.push_back({ParameterWish::Kind::kTie, "weft", {}, {}, {}});
+    for (std::size_t i = 0; i < set_.parameters().size(); ++i) {
+      const FitParameter& p = set_.parameters()[i];
+      if (p.of_yarn && set_.state(i) != ParameterSet::State::kFree) return;
+    }
+    if (set_.layers_fixed(0) || set_.layers_fixed(1) || set_.layers_tied()) return;
+    Material start = chosen.solution.material;
+    (start.warp_fraction >= 0.5 ? start.weft : start.warp) =
+        start.warp_fraction >= 0.5 ? start.warp : start.weft;
+    if (!with_phi_h_) {  // then the share has no effect
+      const bool free = std::any_of(set_.free().begin(), set_.free().end(), [&](std::size_t i) {
+        return set_.parameters()[i].column == kFraction;
+      });
+      if (free) {
+        start.warp_fraction = 0.5;
+        options.wishes.push_back({ParameterWish::Kind::kFix, "warp_fraction", 0.5, {}, {}});
+      }
+    }
+    const ParameterSet tied(options, set_.channels(), with_phi_h_);
+    const Misfit misfit(*observations_, chosen.rows, kExact, workers_);
+    const Solution one =
+        solve(misfit, tied, start, to_the_end(chosen.rows, noise_of(chosen)), workers_);
+    const double noise = options_.noise.value_or(std::max(noise_of(chosen), kLeastNoise));
+    if ((one.cost - chosen.solution.cost) / (noise * noise) > kToldApart) return;
+    const Material first = chosen.solution.start;
+    chosen.solution = one;
+    chosen.solution.start = first;
+    chosen.solution.at_bound.clear();
+    chosen.chi2 = chosen.rows.constant + one.cost;
+    chosen.search.layers.at(one.material.warp.layers, one.material.weft.layers) = chosen.solution;
+    report_.one_yarn = true;
+  }
+
+  double noise_of(const ConventionResult& result) const {
+    return std::sqrt(result.chi2 / degrees_of_freedom(result.rows));
+  }
+
   // One pair of counts: roughly, and to the end where it comes near the best.
   Solution compare_counts(const Misfit& rough, const Misfit& exact, const ConventionResult& chosen,
                           int warp, int weft) const {
     const Solution& from = chosen.search.layers.at(warp, weft);
     constexpr SolveLimits kLook{
-        .iterations = 6, .function_tolerance = 1e-3, .parameter_tolerance = 1e-6, .rounds = 0};
-    Solution solution = solve(rough, set_, from.material, kLook, Workers(1, workers_.progress));
-    const double unit =
-        std::max(chosen.chi2, chosen.rows.target_square * kLeastNoise * kLeastNoise) /
-        degrees_of_freedom(chosen.rows);
+        .iterations = 5, .function_tolerance = 1e-2, .parameter_tolerance = 1e-6, .rounds = 0};
+    const Workers single(1, workers_.progress);
+    Solution solution = solve(rough, set_, from.material, kLook, single);
+    const double freedom = degrees_of_freedom(chosen.rows);
+    const double unit = std::max(chosen.chi2 / freedom, kLeastNoise * kLeastNoise);
+    // What is near is fitted until a step changes chi2 by a hundredth.
     constexpr double kNear = 10;
+    constexpr double kEnough = 0.01;
     if (solution.cost - chosen.solution.cost < kNear * kToldApart * unit) {
-      solution = solve(exact, set_, solution.material, {}, Workers(1, workers_.progress));
+      const SolveLimits limits{
+          .iterations = 50,
+          .function_tolerance =
+              kEnough * unit /
+              std::max(solution.cost, static_cast<double>(chosen.rows.row_count()) * unit),
+          .parameter_tolerance = 1e-9,
+          .rounds = 1};
+      solution = solve(exact, set_, solution.material, limits, single);
     }
     solution.start = from.start;
     return solution;
@@ -269,6 +336,7 @@ class TableFit {
     ConventionResult& chosen = results_[chosen_];
     const ValueSource source = table_values(table_, *observations_);
     profile_layers(chosen, source);
+    try_one_yarn(chosen);
     const double freedom = degrees_of_freedom(chosen.rows);
     const double estimated = std::sqrt(chosen.chi2 / freedom);
     const double stored = table_.precision().relative / std::sqrt(3.0);
@@ -301,8 +369,16 @@ class TableFit {
     constexpr std::size_t kPlaces = 40;
     const Observations places = thinned(*observations_, kPlacesX, kPlaces);
     const Material& found = chosen.solution.material;
-    relabelling_ = canonical(find_equivalents(places, found, set_), found, with_phi_h_);
+    const std::vector<Relabelling> equivalents = find_equivalents(places, found, set_);
+    relabelling_ = canonical(equivalents, found, with_phi_h_);
     report_.material = relabelling_.apply(found);
+    for (const auto& [warp, weft] : chosen.search.layers.pairs()) {
+      const Solution& fit = chosen.search.layers.at(warp, weft);
+      const double above = (fit.cost - chosen.solution.cost) / (report_.noise * report_.noise);
+      if (above > kToldApart) continue;
+      alternatives_.push_back(
+          canonical(equivalents, fit.material, with_phi_h_).apply(fit.material));
+    }
     for (const Relabelling& other : find_equivalents(places, report_.material, set_)) {
       if (other.exchanges == 0 && other.turn_deg == 0) continue;
       report_.equivalents.push_back({other.words, other.apply(report_.material)});
@@ -364,6 +440,7 @@ class TableFit {
         if (estimate.verdict != Verdict::kIdentifiable) {
           estimate.reason = reason_of(p, report_.blind);
         }
+        look_at_alternatives(p, estimate);
       } else if (at_bound[i]) {
         estimate.verdict = Verdict::kAtBound;
         estimate.reason = "the best value lies at or beyond its bound";
@@ -373,6 +450,24 @@ class TableFit {
       }
       report_.parameters.push_back(estimate);
     }
+  }
+
+  // What layer counts that the table cannot tell apart have to say: standard errors know only the
+  // neighbourhood of one of them.
+  void look_at_alternatives(const FitParameter& p, ParameterEstimate& estimate) const {
+    double low = estimate.value;
+    double high = estimate.value;
+    for (const Material& other : alternatives_) {
+      const double value = parameter_value(other, p);
+      low = std::min(low, value);
+      high = std::max(high, value);
+    }
+    const double spread = std::max(high - estimate.value, estimate.value - low);
+    const Verdict verdict = verdict_of(p, estimate.value, spread);
+    if (verdict <= estimate.verdict) return;
+    estimate.verdict = verdict;
+    estimate.reason = "layer counts that fit as well have values from " + short_text(low) + " to " +
+                      short_text(high);
   }
 
   // Where the relabelling takes a parameter.
@@ -406,6 +501,7 @@ class TableFit {
   std::optional<Observations> observations_;  // of the chosen convention
   Reflectance observations_reflectance_ = Reflectance::kMicrofacet;
   Relabelling relabelling_;
+  std::vector<Material> alternatives_;  // of layer counts that are not told apart
 };
 
 }  // namespace

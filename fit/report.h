@@ -117,7 +117,8 @@ struct FitReport {
   int iterations = 0;   ///< of the last solve
   std::string failure;  ///< why there is nothing to tell; empty where there is
 
-  Material material;  ///< best fit, in the form that product.md names
+  Material material;      ///< best fit, in the form that product.md names
+  bool one_yarn = false;  ///< two yarns fit no better than this cloth of one
   std::vector<ParameterEstimate> parameters;
   std::vector<BlindDirection> blind;  ///< weak ones too, the worst first
   double condition = 0;  ///< of the Jacobian, columns scaled to 1; 0 where it is infinite

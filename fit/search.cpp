@@ -17,7 +17,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr SolveLimits kFirstLook{
     .iterations = 25, .function_tolerance = 1e-4, .parameter_tolerance = 1e-5, .rounds = 0};
 constexpr SolveLimits kNeighbour{
-    .iterations = 25, .function_tolerance = 1e-5, .parameter_tolerance = 1e-6, .rounds = 0};
+    .iterations = 20, .function_tolerance = 1e-4, .parameter_tolerance = 1e-6, .rounds = 0};
 
 // Starts that go on to look for better layer counts.
 constexpr std::size_t kPromising = 6;
@@ -130,7 +130,11 @@ class Searcher {
         if (nearest == nullptr || beside.cost < nearest->cost) nearest = &beside;
       }
     }
-    return go_on(*nearest, warp, weft);
+    // The best of all, too: where a yarn hardly shows, its neighbours may be far out.
+    const auto [best_warp, best_weft] = table.best();
+    const Solution beside = go_on(*nearest, warp, weft);
+    const Solution from_best = go_on(table.at(best_warp, best_weft), warp, weft);
+    return from_best.cost < beside.cost ? from_best : beside;
   }
 
   const Misfit& misfit_;

@@ -101,6 +101,9 @@ Solution solve_free(const Misfit& misfit, const ParameterSet& set, const Materia
   options.function_tolerance = limits.function_tolerance;
   options.parameter_tolerance = limits.parameter_tolerance;
   options.gradient_tolerance = 0;
+  // With bounds, steps are followed by a line search: with this one it needs no derivatives.
+  options.line_search_interpolation_type = ceres::BISECTION;
+  options.max_num_line_search_step_size_iterations = 6;
   options.logging_type = ceres::SILENT;
   options.num_threads = 1;
   ceres::Solver::Summary summary;
