@@ -85,7 +85,9 @@ class TableFit {
     if (report_.failure.empty()) {
       for (const Reflectance reflectance : options_.reflectances) fit_conventions(reflectance);
       if (results_.empty()) {
-        report_.failure = "averaged cells can be fitted with the microfacet convention only";
+        report_.failure = overflows_
+                              ? "no cloth comes near these values: squares of what is left overflow"
+                              : "averaged cells can be fitted with the microfacet convention only";
       } else {
         choose();
       }
@@ -167,6 +169,10 @@ class TableFit {
       const auto [warp, weft] = result.search.layers.best();
       result.solution = result.search.layers.at(warp, weft);
       settle(observations, source, rows, result);
+      if (!std::isfinite(result.chi2)) {
+        overflows_ = true;
+        continue;
+      }
       if (result.chi2 < chosen_chi2()) {
         if (!observations_ || observations_reflectance_ != reflectance) {
           observations_ = observations;
@@ -198,6 +204,7 @@ class TableFit {
       result.solution.start = start;
       result.solution.iterations += round > 0 ? iterations : 0;
       result.chi2 = result.rows.constant + result.solution.cost;
+      if (!std::isfinite(result.chi2)) return;
       noise = std::sqrt(result.chi2 / degrees_of_freedom(result.rows));
       if (round > 0 && moved(before, result.solution.material, misfit, noise) < kSettled) break;
     }
@@ -209,8 +216,7 @@ class TableFit {
   // an estimate of the noise, the weights are about to change anyway.
   static SolveLimits to_the_end(const Rows& rows, double noise) {
     if (!(noise > 0)) return {.function_tolerance = 1e-6, .rounds = 1};
-    const double rows_cost = static_cast<double>(rows.row_count()) * noise * noise;
-    return {.function_tolerance = kSettled * kSettled * noise * noise / rows_cost};
+    return {.function_tolerance = kSettled * kSettled / static_cast<double>(rows.row_count())};
   }
 
   double degrees_of_freedom(const Rows& rows) const {
@@ -498,6 +504,7 @@ class TableFit {
   FitReport report_;
   std::vector<ConventionResult> results_;
   std::size_t chosen_ = 0;
+  bool overflows_ = false;                    // the misfit of some convention
   std::optional<Observations> observations_;  // of the chosen convention
   Reflectance observations_reflectance_ = Reflectance::kMicrofacet;
   Relabelling relabelling_;

@@ -109,6 +109,8 @@ TEST_CASE("ceres::GradientChecker finds no error in any residual") {
   for (const Case& c : cases(seed_from_environment() + 7)) {
     const CeresResiduals residuals(c.problem, c.at);
     ceres::NumericDiffOptions options;
+    options.ridders_relative_initial_step_size = 1e-3;
+    options.relative_step_size = 1e-3;
     const std::vector<const ceres::Manifold*>* const no_manifolds = nullptr;
     const ceres::GradientChecker checker(&residuals, no_manifolds, options);
     const std::vector<double> at = c.problem.set().coordinates(c.at);

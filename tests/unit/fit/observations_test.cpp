@@ -82,16 +82,19 @@ TEST_CASE("the fit's values of averaged cells are those of tables to the quadrat
   // Measured on the presets: at most 1e-4, but where V-cavity shadow begins in a cell.
   constexpr double kRms = 5e-4;
   constexpr double kWorst = 2e-2;
-  for (const char* name : {"silk", "cotton", "tamamushi"}) {
+  // Well below both; the tightest takes minutes.
+  constexpr double kTable = 1e-5;
+  const auto check = [&](const char* name, const Grid& grid) {
     const Material m = read_material(preset(name));
-    for (const Grid& grid : {halfdiff3d(24, 24, 24), halfdiff4d(16, 12, 10, 10)}) {
-      const Difference d = difference(table_of(m, grid, {true, kTightestAverage}), m);
-      std::cout << "fit's values against tables, averages, " << name << ' ' << grid.description()
-                << ": rms " << d.rms << ", worst " << d.worst << '\n';
-      CHECK(d.rms <= kRms);
-      CHECK(d.worst <= kWorst);
-    }
-  }
+    const Difference d = difference(table_of(m, grid, {true, kTable}), m);
+    std::cout << "fit's values against tables, averages, " << name << ' ' << grid.description()
+              << ": rms " << d.rms << ", worst " << d.worst << '\n';
+    CHECK(d.rms <= kRms);
+    CHECK(d.worst <= kWorst);
+  };
+  check("silk", halfdiff3d(24, 24, 24));
+  check("tamamushi", halfdiff3d(24, 24, 24));
+  check("tamamushi", halfdiff4d(8, 6, 8, 6));
 }
 
 TEST_CASE("averaged cells are observed where the horizon does not cut them") {
