@@ -165,11 +165,9 @@ std::size_t total_count(const std::vector<Channel>& channels) {
 std::vector<double> wavelengths_of(const std::vector<Channel>& channels) {
   std::vector<double> wavelengths;
   for (const Channel& channel : channels) {
-    double wavelength = 0;
-    const char* const end = channel.name.data() + channel.name.size();
-    const auto [next, error] = std::from_chars(channel.name.data(), end, wavelength);
-    if (error != std::errc() || std::string_view(next, end) != "nm") return {};
-    wavelengths.push_back(wavelength);
+    const std::optional<double> wavelength = named_wavelength(channel.name);
+    if (!wavelength) return {};
+    wavelengths.push_back(*wavelength);
   }
   return wavelengths;
 }

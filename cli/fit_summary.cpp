@@ -105,6 +105,9 @@ std::string fit_summary(const FitReport& report) {
   std::string text = header(report);
   if (!report.failure.empty()) return text + labelled("failure", report.failure);
   text += solver_text(report) + misfit_text(report) + conventions_text(report);
+  if (report.one_yarn) {
+    text += labelled("yarns", "two fit no better than this cloth of one: both are reported equal");
+  }
   text += parameters_text(report) + blind_text(report.blind, report.condition);
   text += layers_text(report.layers) + starts_text(report) + equivalents_text(report.equivalents);
   text += residuals_text(report);

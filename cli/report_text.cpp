@@ -112,7 +112,8 @@ std::string equivalents_text(const std::vector<Equivalent>& equivalents) {
 std::string layers_text(const LayerProfile& layers) {
   std::string others;
   for (const LayerFit& fit : layers.fits) {
-    if (fit.told || (fit.warp == layers.warp && fit.weft == layers.weft)) continue;
+    if (fit.told || fit.equivalent || (fit.warp == layers.warp && fit.weft == layers.weft))
+      continue;
     others +=
         (others.empty() ? "" : ", ") + std::to_string(fit.warp) + "/" + std::to_string(fit.weft);
   }

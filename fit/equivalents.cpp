@@ -37,8 +37,9 @@ constexpr Exchange kExchanges[] = {
      [](Material& m) { std::swap(m.warp.layers, m.weft.layers); }},
 };
 constexpr unsigned kExchangeCount = std::size(kExchanges);
-constexpr unsigned kBetweenYarns = 0xF8;  // all that belongs to a yarn
-constexpr int kTurnSteps = 12;            // of half a turn: the cloth looks the same after that
+constexpr unsigned kShares = 1U << 2U;
+constexpr unsigned kWholeYarns = 0xF8 | kShares;  // all that belongs to a yarn, and its share
+constexpr int kTurnSteps = 12;  // of half a turn: the cloth looks the same after that
 
 double into_half_turn(double degrees) {  // (-90, 90]
   const double turned = std::remainder(degrees, 180);
@@ -48,16 +49,26 @@ double into_half_turn(double degrees) {  // (-90, 90]
 std::string words_of(unsigned exchanges, double turn_deg) {
   std::string words;
   const auto add = [&](const std::string& more) { words += (words.empty() ? "" : ", ") + more; };
-  if ((exchanges & kBetweenYarns) == kBetweenYarns) {
+  if ((exchanges & kWholeYarns) == kWholeYarns) {
     add("the yarns exchanged");
-    exchanges &= ~kBetweenYarns;
-    exchanges &= ~4U;
+    exchanges &= ~kWholeYarns;
   }
   for (unsigned k = 0; k < kExchangeCount; ++k) {
     if (exchanges >> k & 1U) add(kExchanges[k].words);
   }
   if (turn_deg != 0) add("turned by " + std::to_string(static_cast<int>(turn_deg)) + " degrees");
   return words;
+}
+
+// All sets of exchanges, those of whole yarns before those of some of their parameters: of several
+// ways to one material the plainest is named.
+std::vector<unsigned> exchange_sets() {
+  std::vector<unsigned> sets;
+  for (unsigned set = 0; set < 1U << kExchangeCount; ++set) sets.push_back(set);
+  std::stable_partition(sets.begin(), sets.end(), [](unsigned set) {
+    return (set & kWholeYarns) == 0 || (set & kWholeYarns) == kWholeYarns;
+  });
+  return sets;
 }
 
 bool same_table(const ModelValues& a, const ModelValues& b) {
@@ -120,7 +131,7 @@ std::vector<Relabelling> find_equivalents(const Observations& places, const Mate
   const ModelValues here_first = model_values(first, material, kExact, 1);
   std::vector<Relabelling> result = {{"as it is", 0, 0}};
   std::vector<Material> materials = {material};
-  for (unsigned exchanges = 0; exchanges < 1U << kExchangeCount; ++exchanges) {
+  for (const unsigned exchanges : exchange_sets()) {
     for (int step = 0; step < kTurnSteps; ++step) {
       const double turn_deg = into_half_turn(step * (180.0 / kTurnSteps));
       const Relabelling candidate = {words_of(exchanges, turn_deg), exchanges, turn_deg};

@@ -55,8 +55,9 @@ struct BlindDirection {
 struct LayerFit {
   int warp = 0;
   int weft = 0;
-  double chi2 = 0;    ///< sum of squared residuals, in units of the noise
-  bool told = false;  ///< from the chosen counts: chi2 is higher by more than kToldApart
+  double chi2 = 0;          ///< sum of squared residuals, in units of the noise
+  bool told = false;        ///< from the chosen counts: chi2 is higher by more than kToldApart
+  bool equivalent = false;  ///< the chosen fit, relabelled
 };
 
 /// Two fits whose chi2 differ by more than this are told apart: three standard deviations.
@@ -70,7 +71,8 @@ struct LayerProfile {
   std::vector<LayerFit> fits;  ///< all pairs of counts; those of the warp slowest
 };
 
-/// A minimum that scattered starts ended in, with layer counts of its own.
+/// A minimum that scattered starts ended in, with layer counts of its own; chi2 over the rows of
+/// the search, in units of the noise.
 struct Optimum {
   double chi2 = 0;
   int starts = 0;  ///< that ended there
@@ -114,7 +116,7 @@ struct FitReport {
   bool converged = false;
   std::string termination;  ///< of the solver, in its own words
   std::string message;
-  int iterations = 0;   ///< of the last solve
+  int iterations = 0;   ///< over all rounds of weights
   std::string failure;  ///< why there is nothing to tell; empty where there is
 
   Material material;      ///< best fit, in the form that product.md names

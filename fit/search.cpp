@@ -250,4 +250,9 @@ Search search(const Misfit& misfit, const ParameterSet& set, const FitOptions& o
   return result;
 }
 
+void fill_layers(const Misfit& misfit, const ParameterSet& set, const FitOptions& options,
+                 LayerTable& table, Workers workers) {
+  Searcher(misfit, set, options, workers).fill(table);
+}
+
 }  // namespace clothbrdf

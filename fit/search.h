@@ -10,6 +10,10 @@
 
 namespace clothbrdf {
 
+/// Where a search looks: so many distinct cos_theta_d and groups of cells (thinned()).
+inline constexpr std::size_t kSearchedX = 16;
+inline constexpr std::size_t kSearchedGroups = 400;
+
 /// The layer counts of both yarns that are fitted.
 struct LayerRange {
   int fewest = 0;
@@ -56,5 +60,10 @@ struct Search {
 /// every pair of counts, from its best neighbour. The same result for any number of threads.
 Search search(const Misfit& misfit, const ParameterSet& set, const FitOptions& options,
               Reflectance reflectance, Paths paths, Workers workers);
+
+/// Every pair of counts that the table does not have, from the best outward, each from its best
+/// neighbour and from the best of all. Counts into the workers' progress.
+void fill_layers(const Misfit& misfit, const ParameterSet& set, const FitOptions& options,
+                 LayerTable& table, Workers workers);
 
 }  // namespace clothbrdf

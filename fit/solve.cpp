@@ -118,9 +118,10 @@ Solution solve_free(const Misfit& misfit, const ParameterSet& set, const Materia
   return solution;
 }
 
-// Free parameters whose bound keeps the cost from falling.
-std::vector<std::size_t> held(const Misfit& misfit, const ParameterSet& set,
-                              const Material& material) {
+}  // namespace
+
+std::vector<std::size_t> held_by_bounds(const Misfit& misfit, const ParameterSet& set,
+                                        const Material& material) {
   std::vector<std::size_t> result;
   const std::vector<double> at = set.coordinates(material);
   std::vector<int> side(at.size(), 0);
@@ -141,14 +142,12 @@ std::vector<std::size_t> held(const Misfit& misfit, const ParameterSet& set,
   return result;
 }
 
-}  // namespace
-
 Solution solve(const Misfit& misfit, const ParameterSet& set, const Material& start,
                const SolveLimits& limits, Workers workers) {
   Solution best = solve_free(misfit, set, start, limits, workers);
   // Projected steps creep along a bound: with what it holds fixed they do not.
   for (int round = 0; round < limits.rounds; ++round) {
-    std::vector<std::size_t> at_bound = held(misfit, set, best.material);
+    std::vector<std::size_t> at_bound = held_by_bounds(misfit, set, best.material);
     const bool same = at_bound == best.at_bound;
     best.at_bound = at_bound;
     if (at_bound.empty() || same) break;

@@ -33,6 +33,10 @@ struct SolveLimits {
 Solution solve(const Misfit& misfit, const ParameterSet& set, const Material& start,
                const SolveLimits& limits, Workers workers);
 
+/// Free parameters that lie on a bound which keeps the cost from falling.
+std::vector<std::size_t> held_by_bounds(const Misfit& misfit, const ParameterSet& set,
+                                        const Material& material);
+
 /// k_s, k_i and k_d (those that are free) that fit best, all else given: the model is linear in
 /// them. None is negative.
 Material with_best_weights(const Misfit& misfit, const ParameterSet& set, const Material& start);

@@ -90,6 +90,7 @@ Json layers_json(const LayerProfile& layers) {
              Json one = {{"warp", fit.warp}, {"weft", fit.weft}};
              put(one, "chi2", fit.chi2);
              one["told"] = fit.told;
+             one["equivalent"] = fit.equivalent;
              return one;
            })}};
 }
@@ -152,6 +153,7 @@ std::string fit_report_to_json(const FitReport& report) {
                {"iterations", report.iterations}};
   put_words(json, "failure", report.failure);
   put_material(json, report.material);
+  json["one_yarn"] = report.one_yarn;
   json["parameters"] = array_of(report.parameters, parameter_json);
   json["blind"] = array_of(report.blind, blind_json);
   put_condition(json, report.condition);

@@ -1,6 +1,7 @@
 #include "table/table_spec.h"
 
 #include <algorithm>
+#include <charconv>
 
 #include "model/parameters.h"
 
@@ -28,6 +29,16 @@ std::vector<Channel> material_channels(const Material& material, bool with_compo
     if (!with_components) break;
   }
   return channels;
+}
+
+std::optional<double> named_wavelength(const std::string& channel_name) {
+  std::string text = channel_name;
+  std::replace(text.begin(), text.end(), '_', '.');
+  double wavelength = 0;
+  const char* const end = text.data() + text.size();
+  const auto [next, error] = std::from_chars(text.data(), end, wavelength);
+  if (error != std::errc() || std::string_view(next, end) != "nm") return std::nullopt;
+  return wavelength;
 }
 
 std::string full_name(const Channel& channel) {

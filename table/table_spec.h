@@ -71,6 +71,9 @@ struct TableSpec {
 /// them.
 std::vector<Channel> material_channels(const Material& material, bool with_components);
 
+/// The wavelength that a channel is named after, nm; none for other names.
+std::optional<double> named_wavelength(const std::string& channel_name);
+
 /// Name of a channel in files: "R", "specular.R".
 std::string full_name(const Channel& channel);
 

@@ -119,7 +119,9 @@ TEST_CASE("random cloths come back from a MERL file up to the axes' and the yarn
     for (const Equivalent& e : report.equivalents) words.insert(e.words);
     for (const char* expected : {"the warp's lobe axes exchanged", "the weft's lobe axes exchanged",
                                  "the yarns exchanged"}) {
-      INFO(expected);
+      std::string all;
+      for (const std::string& w : words) all += w + "; ";
+      INFO(expected << " in " << all);
       CHECK(words.contains(expected));
     }
     add(fit_noisy(table, truth, seed + static_cast<std::uint64_t>(n)), truth, n, 0, with_noise);

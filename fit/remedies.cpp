@@ -1,0 +1,98 @@
+#include "fit/remedies.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fit/misfit.h"
+#include "fit/noisy_values.h"
+#include "fit/uncertainty.h"
+
+namespace clothbrdf {
+namespace {
+
+std::vector<bool> settled(const TableSpec& spec, const Material& material,
+                          const FitOptions& options, double noise, Workers workers) {
+  const ParameterSet set = identified_set(spec, material, options);
+  const Observations observations = observe(spec, material.reflectance, workers);
+  const ModelValues model = model_values(observations, material, kExact, workers);
+  const std::vector<unsigned char> all;
+  const ValueSource source =
+      measured_values(observations, spec, all, model, options.weighting, 0, 0);
+  const Rows rows = make_rows(observations, source, {options.weighting, Loss::kSquared, 0}, &model,
+                              true, workers);
+  const Misfit misfit(observations, rows, kExact, workers);
+  const Uncertainty found = uncertainty(misfit.triangle(material, set), set, material, noise);
+  std::vector<bool> result(set.parameters().size(), false);
+  for (std::size_t k = 0; k < set.free().size(); ++k) {
+    const FitParameter& p = set.parameters()[set.free()[k]];
+    result[set.free()[k]] = verdict_of(p, parameter_value(material, p), found.standard_errors[k]) ==
+                            Verdict::kIdentifiable;
+  }
+  return result;
+}
+
+}  // namespace
+
+bool has_phi_h(const TableSpec& spec) {
+  return !spec.has_grid() || spec.grid().kind != GridKind::kHalfDifference3d;
+}
+
+bool lies_at_bound(const ParameterSet& set, std::size_t parameter, const Material& material) {
+  const FitParameter& p = set.parameters()[parameter];
+  const double value = parameter_value(material, p);
+  constexpr double kNear = 1e-9;
+  return value <= p.lowest + kNear * std::abs(p.lowest) || value >= p.highest - kNear * p.highest;
+}
+
+ParameterSet identified_set(const TableSpec& spec, const Material& material,
+                            const FitOptions& options) {
+  FitOptions at_truth = options;
+  at_truth.start = material;
+  ParameterSet set(at_truth, material.channel_count(), has_phi_h(spec));
+  const std::vector<std::size_t> free = set.free();
+  for (const std::size_t i : free) {
+    if (lies_at_bound(set, i, material)) set = set.with_fixed(i);
+  }
+  return set;
+}
+
+std::vector<Remedy> try_remedies(const TableSpec& spec, const Material& material,
+                                 const FitOptions& options, double noise, Workers workers) {
+  std::vector<Remedy> remedies;
+  const auto add = [&](const std::string& words, const TableSpec& other, const FitOptions& known,
+                       double less_noise) {
+    workers.check();
+    remedies.push_back({words, settled(other, material, known, less_noise, workers)});
+  };
+  if (!has_phi_h(spec)) {
+    TableSpec with_phi_h = spec;
+    with_phi_h.samples = halfdiff4d(24, 18, 24, 24);
+    with_phi_h.cells = {};
+    add("a table with phi_h, as " + with_phi_h.grid().description(), with_phi_h, options, noise);
+  }
+  constexpr double kLessNoise = 10;
+  add("a tenth of the noise", spec, options, noise / kLessNoise);
+  const auto given = [&](const std::string& name, const std::string& words) {
+    FitOptions known = options;
+    known.wishes.push_back({ParameterWish::Kind::kFix, name, {}, {}, {}});
+    add(words, spec, known, noise);
+  };
+  given("refractive_index", "the refractive indices, from elsewhere");
+  given("warp_fraction", "the warp's share of the surface, from a picture of the weave");
+  given("weights", "the weights of the components, from a measurement of each");
+  FitOptions tied = options;
+  tied.wishes.push_back({ParameterWish::Kind::kTie, "weft", {}, {}, {}});
+  if (material.warp == material.weft && !has_phi_h(spec)) {
+    tied.wishes.push_back({ParameterWish::Kind::kFix, "warp_fraction", {}, {}, {}});
+    add("knowing that both yarns are equal", spec, tied, noise);
+  }
+  return remedies;
+}
+
+std::string remedy_list(const std::vector<Remedy>& remedies) {
+  std::string text;
+  for (const Remedy& remedy : remedies) text += (text.empty() ? "" : "; ") + remedy.words;
+  return text;
+}
+
+}  // namespace clothbrdf

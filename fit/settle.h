@@ -1,0 +1,49 @@
+#pragma once
+
+#include <optional>
+
+#include "fit/search.h"
+#include "fit/solve.h"
+
+namespace clothbrdf {
+
+/// Of the noise: no weights, no values and no sums are exact to more.
+inline constexpr double kLeastNoise = 1e-13;
+
+/// A fit to all rows, with weights from itself.
+struct SettledFit {
+  Solution solution;
+  Rows rows;
+  double chi2 = 0;  ///< of all values, not over the noise
+};
+
+/// What is fitted: the table's values, how they are weighted and which parameters are free. Holds
+/// references.
+struct FitProblem {
+  const Observations& observations;
+  const ValueSource& source;
+  const ParameterSet& set;
+  Weighting weighting = Weighting::kRelative;
+  Loss loss = Loss::kSquared;
+  std::optional<double> noise;  ///< where it is known
+
+  double degrees_of_freedom(const Rows& rows) const;
+  /// The noise, as given or as the residual says.
+  double noise_of(const SettledFit& fit) const;
+  /// Rows with weights from a material.
+  Rows rows(const Material& material, double noise, Workers workers) const;
+};
+
+/// Fits `fit.rows`, then rows with weights from that fit, until a further round would move the
+/// table by less than a thousandth of the noise.
+void settle(const FitProblem& problem, SettledFit& fit, Workers workers);
+
+/// Every pair of layer counts on all rows of a settled fit, each from where the table has it: all
+/// roughly, to the end what comes near the best. The settled fit's own place is kept.
+void compare_layers(const FitProblem& problem, const SettledFit& fit, LayerTable& table,
+                    Workers workers);
+
+/// Until a step changes chi2 by next to nothing.
+SolveLimits to_the_end(const Rows& rows, double noise);
+
+}  // namespace clothbrdf
