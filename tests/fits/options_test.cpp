@@ -185,11 +185,11 @@ TEST_CASE("standard errors are in proportion to the noise that is stated, else t
 }
 
 TEST_CASE("no weighting biases the fit of values with its own noise") {
-  // Weights 1/f^2 from the noisy values would put every weight 2 sigma^2 = 0.5 % too low: here some
-  // ten standard errors of a mean.
+  // Weights 1/f^2 from the noisy values would put every weight 2 sigma^2 = 0.5 %, here of
+  // each weight, off: several standard errors of the mean of some refits.
   constexpr double kNoise = 0.05;
   constexpr double kMostOff = 3;
-  const int refits = soak_cases(16);
+  const int refits = soak_cases(64);
   const Material truth = cloth(5);
   const Table exact = table_of(truth, kGrid);
   const std::uint64_t seed = seed_from_environment();
@@ -209,9 +209,8 @@ TEST_CASE("no weighting biases the fit of values with its own noise") {
       options.weighting = weighting;
       // All else held: one number says how much the whole table is off.
       for (const FitParameter& p : fit_parameters(3)) {
-        if (p.column != kSpecular && p.column != kInternal && p.column != kDiffuse) {
-          options.wishes.push_back({Kind::kFix, p.name, {}, {}, {}});
-        }
+        if (p.column == kInternal) continue;
+        options.wishes.push_back({Kind::kFix, p.name, {}, {}, {}});
       }
       const FitReport report = fit_table(table, options, 1);
       const ParameterEstimate k = parameter(report, "weights.internal");
