@@ -252,8 +252,10 @@ Search search(const Misfit& misfit, const ParameterSet& set, const FitOptions& o
     ends.insert(ends.end(), found.begin(), found.end());
     double lowest = kInfinity;
     for (const Solution& end : ends) lowest = std::min(lowest, end.cost);
+    // Closer than minima can be told apart: noise makes all costs look alike.
+    const double near = kToldApart * lowest / static_cast<double>(misfit.rows().row_count());
     const auto at_best = std::count_if(ends.begin(), ends.end(), [&](const Solution& end) {
-      return same_minimum(lowest, end.cost, rounding);
+      return end.cost - lowest <= near + rounding;
     });
     if (asked || starts == 1 || at_best > 1) break;
   }

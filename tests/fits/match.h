@@ -12,6 +12,7 @@ struct Match {
   std::string name;
   double truth = 0;
   double found = 0;
+  double off = 0;    ///< absolute
   double error = 0;  ///< relative; of the rotation, over 45 degrees
   Verdict verdict = Verdict::kFixed;
   std::optional<double> standard_error;
@@ -32,7 +33,7 @@ inline Comparison compare(const FitReport& report, const Material& candidate,
   result.layers =
       candidate.warp.layers == truth.warp.layers && candidate.weft.layers == truth.weft.layers;
   for (const FitParameter& p : fit_parameters(truth.channel_count())) {
-    Match match{p.name, parameter_value(truth, p), parameter_value(candidate, p), 0, {}, {}};
+    Match match{p.name, parameter_value(truth, p), parameter_value(candidate, p), 0, 0, {}, {}};
     double difference = match.found - match.truth;
     if (p.column == kRotation) difference = std::remainder(difference, 180);
     match.error = std::abs(difference) / (p.column == kRotation ? 45 : std::max(match.truth, 1e-3));
