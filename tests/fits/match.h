@@ -36,7 +36,8 @@ inline Comparison compare(const FitReport& report, const Material& candidate,
     Match match{p.name, parameter_value(truth, p), parameter_value(candidate, p), 0, 0, {}, {}};
     double difference = match.found - match.truth;
     if (p.column == kRotation) difference = std::remainder(difference, 180);
-    match.error = std::abs(difference) / (p.column == kRotation ? 45 : std::max(match.truth, 1e-3));
+    match.off = std::abs(difference);
+    match.error = match.off / (p.column == kRotation ? 45 : std::max(match.truth, 1e-3));
     // The reported parameter of this kind with the same value; at first the one of that name.
     const auto take = [&](const ParameterEstimate& e) {
       match.verdict = e.verdict;
