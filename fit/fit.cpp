@@ -67,7 +67,9 @@ class TableFit {
       if (!results_.empty()) {
         choose();
       } else if (report_.failure.empty()) {
-        report_.failure = "averaged cells can be fitted with the microfacet convention only";
+        report_.failure = overflows_
+                              ? "no cloth comes near these values: squares of what is left overflow"
+                              : "averaged cells can be fitted with the microfacet convention only";
       }
     }
     report_.seconds =
@@ -151,6 +153,10 @@ class TableFit {
       result.fit.solution = result.search.layers.at(warp, weft);
       result.fit.rows = rows;
       settle(problem(observations, source), result.fit, workers_);
+      if (!std::isfinite(result.fit.chi2)) {
+        overflows_ = true;
+        continue;
+      }
       if (result.fit.chi2 < chosen_chi2()) chosen_ = results_.size();
       results_.push_back(std::move(result));
     }
@@ -218,6 +224,7 @@ class TableFit {
   FitReport report_;
   std::vector<ConventionResult> results_;
   std::size_t chosen_ = 0;
+  bool overflows_ = false;  // the misfit of some convention
 };
 
 }  // namespace

@@ -62,6 +62,7 @@ void settle(const FitProblem& problem, SettledFit& fit, Workers workers) {
     fit.solution.start = before.start;
     if (round > 0) fit.solution.iterations += before.iterations;
     fit.chi2 = fit.rows.constant + fit.solution.cost;
+    if (!std::isfinite(fit.chi2)) return;
     noise = std::sqrt(fit.chi2 / problem.degrees_of_freedom(fit.rows));
     if (round > 0 &&
         moved(before.material, fit.solution.material, misfit, problem.set, noise) < kSettled)
