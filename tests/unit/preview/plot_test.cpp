@@ -105,6 +105,33 @@ TEST_CASE("what is no measurement leaves no mark") {
   CHECK(coloured(draw_plot({"", ""}, kAcross, {})) == 0);
 }
 
+TEST_CASE(
+    "values run upward from the lower left corner, and the marks of numbers stand beside them") {
+  const Box frame = {10, 20, 200, 100};
+  const PlotAxis linear = {"", 2, 4, false, {}};
+  const PlotAxis decades = {"", 0.01, 100, true, {}};
+  const auto is_at = [&](const PlotAxis& y, double at_x, double at_y, double x, double down) {
+    const Point point = plot_point(frame, linear, y, at_x, at_y);
+    CHECK_THAT(point.x, Catch::Matchers::WithinAbs(x, 1e-9));
+    CHECK_THAT(point.y, Catch::Matchers::WithinAbs(down, 1e-9));
+  };
+  is_at(linear, 2, 2, 10, 120);
+  is_at(linear, 4, 4, 210, 20);
+  is_at(linear, 3, 2.5, 110, 95);
+  is_at(decades, 2, 0.01, 10, 120);
+  is_at(decades, 2, 1, 10, 70);
+  is_at(decades, 2, 10, 10, 45);
+  for (const double low : {0.01, 0.6}) {
+    const std::vector<Curve> curves = one_curve({low, 1}, {low, 1});
+    const PlotAxis y = value_axis(curves);
+    const Image image = draw_plot({"", ""}, kAcross, curves);
+    for (const Tick& tick : y.ticks) {
+      const double down = plot_point(kPlotFrame, kAcross, y, 0, tick.at).y;
+      CHECK(image.at(kPlotFrame.x - 3, static_cast<int>(std::lround(down))) == kPlotInk);
+    }
+  }
+}
+
 TEST_CASE("a gap interrupts a line, and a point between gaps is a dash") {
   const std::vector<double> none(5, kNone);
   const int whole =
