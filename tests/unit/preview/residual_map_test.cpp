@@ -32,8 +32,9 @@ TEST_CASE("means are those of all values at the same pair of thetas") {
     REQUIRE(means.size() == 12);
     for (int k = 0; k < 12; ++k) {
       const std::optional<double>& mean = means[static_cast<std::size_t>(k)];
+      const int row = k / 4;
       REQUIRE(mean);
-      CHECK_THAT(*mean, Catch::Matchers::WithinAbs(0.01 * (k / 4) - 0.03 * (k % 4), 1e-12));
+      CHECK_THAT(*mean, Catch::Matchers::WithinAbs(0.01 * row - 0.03 * (k % 4), 1e-12));
     }
     CHECK(map.scale() == 0.1);
   }

@@ -58,7 +58,7 @@ TEST_CASE("a slice's title says where its cells stand") {
 
 TEST_CASE("the plane of incidence holds the eye on the light's side and on the other") {
   const Grid grid = inout(6, 8, 6, 8);
-  for (const std::size_t which : {0, 1, 2}) {
+  for (const std::size_t which : {0U, 1U, 2U}) {
     const Slice slice = typical_slices(grid)[which];
     REQUIRE(slice.cells.size() == 11);
     for (std::size_t k = 0; k < slice.cells.size(); ++k) {
