@@ -98,7 +98,8 @@ TEST_CASE("what is no measurement leaves no mark") {
     CAPTURE(value);
     const std::vector<double> values(6, value);
     CHECK(coloured(draw_plot({"", ""}, kAcross, one_curve(values, values))) == 0);
-    const Image one = draw_plot({"", ""}, kAcross, one_curve({value, 0.5, value}, {value, kNone}));
+    const Image one =
+        draw_plot({"", ""}, kAcross, one_curve({value, 0.5, value}, {value, kNone, kNone}));
     CHECK(coloured(one) > 10);
     CHECK(coloured(one) < 40);
   }
