@@ -108,6 +108,7 @@ std::string fit_summary(const FitReport& report) {
   if (report.one_yarn) {
     text += labelled("yarns", "two fit no better than this cloth of one: both are reported equal");
   }
+  for (const std::string& note : report.notes) text += labelled("note", note);
   text += parameters_text(report) + blind_text(report.blind, report.condition);
   text += layers_text(report.layers) + starts_text(report) + equivalents_text(report.equivalents);
   text += residuals_text(report);

@@ -67,7 +67,9 @@ class TableFit {
       if (!results_.empty()) {
         choose();
       } else if (report_.failure.empty()) {
-        report_.failure = "averaged cells can be fitted with the microfacet convention only";
+        report_.failure = overflows_
+                              ? "no cloth comes near these values: squares of what is left overflow"
+                              : "averaged cells can be fitted with the microfacet convention only";
       }
     }
     report_.seconds =
@@ -151,6 +153,10 @@ class TableFit {
       result.fit.solution = result.search.layers.at(warp, weft);
       result.fit.rows = rows;
       settle(problem(observations, source), result.fit, workers_);
+      if (!std::isfinite(result.fit.chi2)) {
+        overflows_ = true;
+        continue;
+      }
       if (result.fit.chi2 < chosen_chi2()) chosen_ = results_.size();
       results_.push_back(std::move(result));
     }
@@ -187,7 +193,7 @@ class TableFit {
         std::sqrt(chosen.fit.chi2 / problem.degrees_of_freedom(chosen.fit.rows));
     const double stored = table_.precision().relative / std::sqrt(3.0);
     report_.noise_estimated = !options_.noise;
-    report_.noise = std::max(options_.noise.value_or(estimated), std::max(kLeastNoise, stored));
+    report_.noise = std::max(problem.noise_of(chosen.fit), stored);
     const double unit = report_.noise * report_.noise;
     report_.chi2 = chosen.fit.chi2 / unit;
     report_.residual_rms = estimated;
@@ -207,7 +213,24 @@ class TableFit {
     }
     report_estimates({observations, chosen.fit, chosen.search.layers, set_, options_, with_phi_h_},
                      workers_, report_);
+    take_notes(problem, chosen);
     report_.residuals = residual_regions(observations, source, report_.material, workers_);
+  }
+
+  void take_notes(const FitProblem& problem, const ConventionResult& chosen) {
+    if (problem.misses_data(chosen.fit)) {
+      report_.notes.push_back(
+          "the residual is more than the scatter within cells of one half vector and theta_d: the "
+          "model does not describe all of this table, and standard errors count that as noise");
+    }
+    if (report_.starts > 1 && report_.starts_at_best == 1) {
+      report_.notes.push_back(
+          "one start alone reached the best optimum: with more starts there may be a better one");
+    }
+    constexpr double kFar = 0.5;
+    if (options_.weighting != Weighting::kAbsolute && report_.residual_rms > kFar) {
+      report_.notes.push_back("the fit is far off: this is no table of a cloth, or not in 1/sr");
+    }
   }
 
   const Table& table_;
@@ -218,6 +241,7 @@ class TableFit {
   FitReport report_;
   std::vector<ConventionResult> results_;
   std::size_t chosen_ = 0;
+  bool overflows_ = false;  // the misfit of some convention
 };
 
 }  // namespace

@@ -56,12 +56,20 @@ class PhiCells {
         const double chi = (phi > 180 ? phi - 270 : 90 - phi) * (pi<double>() / 180);
         edges_.emplace_back(std::clamp(chi, -pi<double>() / 2, pi<double>() / 2));
       }
+      cos_phi_.push_back(std::max(edges_[edges_.size() - 2].sin, edges_.back().sin));
     }
   }
 
+  // Whether the horizon cuts the k-th cell of a box of averages, or the box touches grazing
+  // incidence: the node nearest to it does not tell. The corner with the largest angles is the
+  // lowest one.
+  bool cut(const SinCos<double>& highest_h, const SinCos<double>& highest_d, std::size_t k) const {
+    return !edges_.empty() &&
+           highest_h.cos * highest_d.cos <= highest_h.sin * highest_d.sin * cos_phi_[k];
+  }
+
   // Adds to the measure of each cell above the horizon; of averages the integral of the factor,
-  // by the same measure, goes to `factors`. No quadrature here follows the horizon through a cell:
-  // cells that it cuts have no measure.
+  // by the same measure, goes to `factors`.
   void fill(const SinCos<double>& h, const SinCos<double>& d, double weight, double* factors,
             float* lower_cosines, double* measure) const {
     if (edges_.empty()) {
@@ -81,11 +89,6 @@ class PhiCells {
       const FactorArc::Integral a = arc.from_right_angle(from);
       const FactorArc::Integral b = arc.from_right_angle(to);
       const double length = std::abs(b.length - a.length);
-      constexpr double kWhole = 1 - 1e-9;
-      if (!(length >= kWhole * std::abs(to.chi - from.chi))) {
-        measure[k] = -std::numeric_limits<double>::infinity();
-        continue;
-      }
       factors[k] = size * std::abs(b.factor - a.factor);
       const IncidenceCosines<double> c = incidence_cosines(h, d, std::sin((from.chi + to.chi) / 2));
       lower_cosines[k] = static_cast<float>(std::min(c.i, c.o));
@@ -96,7 +99,7 @@ class PhiCells {
  private:
   bool folded_;
   Reflectance reflectance_;
-  std::vector<double> cos_phi_;
+  std::vector<double> cos_phi_;         // of the node; of averages the largest one's size
   std::vector<FactorArc::Edge> edges_;  // two a cell
 };
 
@@ -140,7 +143,11 @@ void observe_half_difference(const TableSpec& spec, Reflectance reflectance, Obs
           ++site;
         }
       }
+      const SinCos<double> highest_h = sincosd(theta_h.edge_deg(h + 1));
+      const SinCos<double> highest_d = sincosd(theta_d.edge_deg(static_cast<int>(d) + 1));
       for (std::size_t p = 0; p < samples; ++p) {
+        // No quadrature here follows the horizon through a cell.
+        if (cells.cut(highest_h, highest_d, p)) measure[p] = 0;
         if (!(measure[p] > 0)) out.below_horizon += phi_h_count;
         for (std::size_t s = 0; average && s < sites; ++s) {
           factors[s * samples + p] = measure[p] > 0 ? factors[s * samples + p] / measure[p] : 0;

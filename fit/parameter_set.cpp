@@ -190,6 +190,7 @@ ParameterSet::ParameterSet(const FitOptions& options, std::size_t channels, bool
     }
   }
   for (const ParameterWish& wish : options.wishes) apply(wish);
+  if (layers_tied_) tie_layers();
   for (std::size_t i = 0; i < parameters_.size(); ++i) {
     const FitParameter& p = parameters_[i];
     const double value = parameter_value(defaults_, p);
@@ -265,6 +266,18 @@ void ParameterSet::apply(const ParameterWish& wish) {
       for (const FitParameter& p : parameters_) known += (known.empty() ? "" : ", ") + p.name;
       return known;
     }());
+}
+
+void ParameterSet::tie_layers() {
+  int& warp = defaults_.warp.layers;
+  int& weft = defaults_.weft.layers;
+  if (layers_fixed_[0] && layers_fixed_[1] && warp != weft) {
+    throw InputError("layers: tied, but fixed at " + std::to_string(warp) + " and " +
+                     std::to_string(weft));
+  }
+  if (layers_fixed_[1]) warp = weft;
+  weft = warp;
+  layers_fixed_[0] = layers_fixed_[1] = layers_fixed_[0] || layers_fixed_[1];
 }
 
 void ParameterSet::index_free() {

@@ -100,6 +100,7 @@ class ParameterSet {
 
  private:
   void apply(const ParameterWish& wish);
+  void tie_layers();
   void index_free();
 
   std::size_t channels_;

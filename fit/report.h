@@ -139,7 +139,8 @@ struct FitReport {
   int starts = 0;          ///< scattered ones
   int starts_at_best = 0;  ///< that reached the best optimum
   std::vector<Optimum> optima;
-  std::size_t rows = 0;  ///< of the compressed problem
+  std::vector<std::string> notes;  ///< what to bear in mind, in words
+  std::size_t rows = 0;            ///< of the compressed problem
   double seconds = 0;
 };
 

@@ -22,6 +22,10 @@ constexpr SolveLimits kNeighbour{
 // Starts that go on to look for better layer counts.
 constexpr std::size_t kPromising = 6;
 
+// Where the best fit is no match for the data, or where a single start reached it, a better one may
+// have been missed: as many starts again, up to so many times.
+constexpr std::size_t kMostBatches = 4;
+
 // [0, 1), the same on every platform.
 double unit(std::mt19937_64& engine) { return static_cast<double>(engine() >> 11) * 0x1p-53; }
 
@@ -157,11 +161,26 @@ class Searcher {
   Workers single_;
 };
 
-// `rounding`: a cost that the sums' own error explains.
-void count_optima(const std::vector<Solution>& ends, double best, double rounding, Search& result) {
-  // Starts that ended within this of each other are in one minimum.
+// Starts that ended within this of each other are in one minimum. `rounding`: a cost that the sums'
+// own error explains.
+bool same_minimum(double a, double b, double rounding) {
   constexpr double kShare = 0.05;
-  const auto same = [&](double a, double b) { return std::abs(a - b) <= kShare * a + rounding; };
+  return std::abs(a - b) <= kShare * a + rounding;
+}
+
+// Whether what a fit leaves is no more than the scatter of the samples within their groups, which
+// no material changes.
+bool matches_data(const Rows& rows, double cost, double rounding) {
+  const auto count = static_cast<double>(rows.row_count());
+  const double within = static_cast<double>(rows.values) - count;
+  constexpr double kEnough = 100;
+  if (within < kEnough) return false;
+  constexpr double kDeviations = 6;
+  return cost <= rounding + rows.constant / within * (count + kDeviations * std::sqrt(2 * count));
+}
+
+void count_optima(const std::vector<Solution>& ends, double best, double rounding, Search& result) {
+  const auto same = [&](double a, double b) { return same_minimum(a, b, rounding); };
   for (const Solution& end : ends) {
     if (same(best, end.cost)) ++result.starts_at_best;
     bool known = false;
@@ -228,10 +247,7 @@ Search search(const Misfit& misfit, const ParameterSet& set, const FitOptions& o
   const Searcher searcher(misfit, set, options, workers);
   const bool asked = options.start.has_value();
   const auto starts = static_cast<std::size_t>(asked ? 1 : std::max(options.starts, 1));
-  result.starts = asked ? 0 : static_cast<int>(starts);
-
-  std::vector<Solution> ends(starts);
-  tbb::parallel_for(std::size_t{0}, starts, [&](std::size_t k) {
+  const auto run_start = [&](std::size_t k) {
     Material start = asked ? set.defaults() : scattered_start(set, options, estimate, k);
     start.reflectance = reflectance;
     start.paths = paths;
@@ -242,23 +258,38 @@ Search search(const Misfit& misfit, const ParameterSet& set, const FitOptions& o
     start =
         Searcher::with_layers(start, inside(start.warp.layers, 0), inside(start.weft.layers, 1));
     if (!asked) start = with_best_weights(misfit, set, start);
-    ends[k] = searcher.fit(start, kFirstLook);
-    workers.advance(1);
-  });
-  std::stable_sort(ends.begin(), ends.end(),
-                   [](const Solution& a, const Solution& b) { return a.cost < b.cost; });
-  const std::size_t promising = std::min(ends.size(), kPromising);
-  tbb::parallel_for(std::size_t{0}, promising, [&](std::size_t k) {
-    ends[k] = searcher.descend(searcher.go_on(ends[k]), result.layers);
-  });
+    return searcher.fit(start, kFirstLook);
+  };
+  const double rounding = kSearching.tolerance * kSearching.tolerance * misfit.rows().target_square;
+  std::vector<Solution> ends;
+  for (std::size_t batch = 0; batch < kMostBatches; ++batch) {
+    std::vector<Solution> found(starts);
+    tbb::parallel_for(std::size_t{0}, starts, [&](std::size_t k) {
+      found[k] = run_start(batch * starts + k);
+      if (batch == 0) workers.advance(1);
+    });
+    std::stable_sort(found.begin(), found.end(),
+                     [](const Solution& a, const Solution& b) { return a.cost < b.cost; });
+    tbb::parallel_for(std::size_t{0}, std::min(starts, kPromising), [&](std::size_t k) {
+      found[k] = searcher.descend(searcher.go_on(found[k]), result.layers);
+    });
+    ends.insert(ends.end(), found.begin(), found.end());
+    double lowest = kInfinity;
+    for (const Solution& end : ends) lowest = std::min(lowest, end.cost);
+    const auto at_best = std::count_if(ends.begin(), ends.end(), [&](const Solution& end) {
+      return same_minimum(lowest, end.cost, rounding);
+    });
+    if (asked || starts == 1 || matches_data(misfit.rows(), lowest, rounding)) break;
+    // Measured tables match no model: then the starts decide.
+    if (at_best > static_cast<std::ptrdiff_t>(kPromising)) break;
+  }
+  if (!asked) result.starts = static_cast<int>(ends.size());
   for (const Solution& end : ends) {
     Solution& to = result.layers.at(end.material.warp.layers, end.material.weft.layers);
     if (end.cost < to.cost) to = end;
   }
   const std::pair<int, int> best = result.layers.best();
-  const double tolerance = kSearching.tolerance;
-  count_optima(ends, result.layers.at(best.first, best.second).cost,
-               tolerance * tolerance * misfit.rows().target_square, result);
+  count_optima(ends, result.layers.at(best.first, best.second).cost, rounding, result);
   searcher.fill(result.layers);
   return result;
 }

@@ -36,7 +36,21 @@ double FitProblem::degrees_of_freedom(const Rows& rows) const {
 }
 
 double FitProblem::noise_of(const SettledFit& fit) const {
-  return std::max(noise.value_or(std::sqrt(fit.chi2 / degrees_of_freedom(fit.rows))), kLeastNoise);
+  if (noise) return std::max(*noise, kLeastNoise);
+  const double free = static_cast<double>(set.free().size());
+  const double rows = std::max(1.0, static_cast<double>(fit.rows.row_count()) - free);
+  const double square = std::max(fit.chi2 / degrees_of_freedom(fit.rows), fit.solution.cost / rows);
+  return std::max(std::sqrt(square), kLeastNoise);
+}
+
+bool FitProblem::misses_data(const SettledFit& fit) const {
+  const auto rows = static_cast<double>(fit.rows.row_count());
+  const double within = static_cast<double>(fit.rows.values) - rows;
+  constexpr double kEnough = 100;
+  if (within < kEnough) return false;
+  const double scatter = std::max(fit.rows.constant / within, kLeastNoise * kLeastNoise);
+  constexpr double kMuch = 2;
+  return fit.solution.cost / rows > kMuch * scatter;
 }
 
 Rows FitProblem::rows(const Material& material, double scale, Workers workers) const {
@@ -62,6 +76,7 @@ void settle(const FitProblem& problem, SettledFit& fit, Workers workers) {
     fit.solution.start = before.start;
     if (round > 0) fit.solution.iterations += before.iterations;
     fit.chi2 = fit.rows.constant + fit.solution.cost;
+    if (!std::isfinite(fit.chi2)) return;
     noise = std::sqrt(fit.chi2 / problem.degrees_of_freedom(fit.rows));
     if (round > 0 &&
         moved(before.material, fit.solution.material, misfit, problem.set, noise) < kSettled)

@@ -28,8 +28,11 @@ struct FitProblem {
   std::optional<double> noise;  ///< where it is known
 
   double degrees_of_freedom(const Rows& rows) const;
-  /// The noise, as given or as the residual says.
+  /// The noise, as given or as the residual says. What the model cannot follow is alike within a
+  /// group of cells and counts once for it, not once for each of its samples.
   double noise_of(const SettledFit& fit) const;
+  /// Whether the rows are left with much more than the scatter of the samples within their groups.
+  bool misses_data(const SettledFit& fit) const;
   /// Rows with weights from a material.
   Rows rows(const Material& material, double noise, Workers workers) const;
 };

@@ -168,6 +168,7 @@ std::string fit_report_to_json(const FitReport& report) {
   json["residuals"] = array_of(report.residuals, residual_json);
   json.update({{"starts", report.starts}, {"starts_at_best", report.starts_at_best}});
   json["optima"] = array_of(report.optima, optimum_json);
+  json["notes"] = report.notes;
   json["rows"] = report.rows;
   put(json, "seconds", report.seconds);
   return laid_out(json);

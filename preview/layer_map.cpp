@@ -17,6 +17,7 @@ constexpr int kNarrowest = 420;  // holds the title
 
 std::vector<double> sorted_values(const std::vector<SweepCell>& cells, double SweepCell::*member) {
   std::vector<double> values;
+  values.reserve(cells.size());
   for (const SweepCell& cell : cells) values.push_back(cell.*member);
   std::sort(values.begin(), values.end());
   values.erase(std::unique(values.begin(), values.end()), values.end());

@@ -27,7 +27,8 @@ struct PlotAxis {
   double share(double value) const;
 };
 
-/// Measured values as dots and what is held against them as a line. A NaN is a gap.
+/// Measured values as dots and what is held against them as a line; as many of both as of x. A NaN
+/// is a gap.
 struct Curve {
   std::vector<double> x;
   std::vector<double> dots;

@@ -10,8 +10,8 @@
 namespace clothbrdf {
 namespace {
 
-constexpr Box kMapFrame = {kPlotFrame.x, kPlotFrame.y, kPlotFrame.width - 104, kPlotFrame.height};
-constexpr Box kBar = {kMapFrame.x + kMapFrame.width + 14, kMapFrame.y, 14, kMapFrame.height};
+constexpr Box kBar = {kResidualFrame.x + kResidualFrame.width + 14, kResidualFrame.y, 14,
+                      kResidualFrame.height};
 
 // -1 to 1, beyond as at the ends.
 Rgb diverging(double share) {
@@ -94,19 +94,20 @@ Image ResidualMap::draw() const {
   const Axis& up = grid_.axes[second_];
   const std::vector<std::optional<double>> all = means();
   const double most = scale();
-  for (int y = 0; y < kMapFrame.height; ++y) {
-    const int k_up = (kMapFrame.height - 1 - y) * up.size / kMapFrame.height;
-    for (int x = 0; x < kMapFrame.width; ++x) {
-      const int k_across = x * across.size / kMapFrame.width;
+  for (int y = 0; y < kResidualFrame.height; ++y) {
+    const int k_up = (kResidualFrame.height - 1 - y) * up.size / kResidualFrame.height;
+    for (int x = 0; x < kResidualFrame.width; ++x) {
+      const int k_across = x * across.size / kResidualFrame.width;
       const std::optional<double>& mean =
           all[static_cast<std::size_t>(k_across) * static_cast<std::size_t>(up.size) +
               static_cast<std::size_t>(k_up)];
-      image.at(kMapFrame.x + x, kMapFrame.y + y) = mean ? diverging(*mean / most) : kPlotFaint;
+      image.at(kResidualFrame.x + x, kResidualFrame.y + y) =
+          mean ? diverging(*mean / most) : kPlotFaint;
     }
   }
   draw_bar(image, most);
   const PlotTitle title = {"mean of (table - fit) / fit", up.name + " upward, " + scale_text(most)};
-  draw_axes(image, kMapFrame, title, angle_axis(across), angle_axis(up));
+  draw_axes(image, kResidualFrame, title, angle_axis(across), angle_axis(up));
   return image;
 }
 

@@ -3,10 +3,15 @@
 #include <optional>
 #include <vector>
 
+#include "preview/plot.h"
 #include "support/image.h"
 #include "table/grid.h"
 
 namespace clothbrdf {
+
+/// Where the map is in its plot; the scale's colours stand to its right.
+inline constexpr Box kResidualFrame = {kPlotFrame.x, kPlotFrame.y, kPlotFrame.width - 104,
+                                       kPlotFrame.height};
 
 /// Where a fit lies beside its table: the mean of (table - fit) / fit over all values at the same
 /// theta_h and theta_d (in/out grids: theta_i and theta_o).
