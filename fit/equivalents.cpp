@@ -85,8 +85,9 @@ bool same_table(const ModelValues& a, const ModelValues& b) {
   return same(a.diffuse, b.diffuse) && same(a.site, b.site);
 }
 
+// A fit's rounding apart: what same_table() would not see.
 bool same_material(const Material& a, const Material& b, const ParameterSet& set) {
-  constexpr double kRounding = 1e-12;
+  constexpr double kRounding = 1e-8;
   for (const FitParameter& p : set.parameters()) {
     const double x = parameter_value(a, p);
     const double y = parameter_value(b, p);
@@ -158,10 +159,15 @@ Relabelling canonical(const std::vector<Relabelling>& equivalents, const Materia
     const double rotation = into_half_turn(m.rotation_deg);
     const bool turned = with_phi_h && !(rotation > -45 && rotation <= 45);
     const auto crossed = [](const Yarn& yarn) { return yarn.lobe_axes[0] > yarn.lobe_axes[1]; };
-    const bool warp_larger = m.warp_fraction >= 0.5;
+    constexpr double kEqualShares = 1e-6;
+    const bool equal = std::abs(m.warp_fraction - 0.5) <= kEqualShares;
+    const bool warp_larger = equal || m.warp_fraction > 0.5;
     const int axes =
         with_phi_h ? crossed(warp_larger ? m.warp : m.weft) : crossed(m.warp) + crossed(m.weft);
-    return std::tuple(turned, axes, !with_phi_h && !warp_larger, relabelling.exchanges);
+    // Of equal shares without phi_h the narrower yarn is the warp: the same for every start.
+    const double narrow =
+        !with_phi_h && equal ? std::min(m.warp.lobe_axes[0], m.warp.lobe_axes[1]) : 0.0;
+    return std::tuple(turned, axes, !with_phi_h && !warp_larger, narrow, relabelling.exchanges);
   };
   return *std::min_element(
       equivalents.begin(), equivalents.end(),

@@ -1,22 +1,14 @@
 #include "fit/estimates.h"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 
+#include "fit/doubts.h"
 #include "fit/equivalents.h"
 #include "fit/one_yarn.h"
 #include "fit/uncertainty.h"
 
 namespace clothbrdf {
 namespace {
-
-std::string short_text(double value) {
-  std::array<char, 32> text{};
-  const auto end =
-      std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, 3);
-  return {text.data(), end.ptr};
-}
 
 class Estimates {
  public:
@@ -37,6 +29,8 @@ class Estimates {
     if (tied_) shared_ = uncertainty_of(*tied_);
     report_.blind = found.blind;
     report_.condition = found.condition;
+    const std::vector<Doubt> doubt =
+        doubts(misfit_, set_, report_.material, alternatives_, report_.noise);
     const Material start = relabelling_.apply(chosen_.fit.solution.start);
     for (std::size_t i = 0; i < set_.parameters().size(); ++i) {
       const FitParameter& p = set_.parameters()[i];
@@ -50,7 +44,7 @@ class Estimates {
       const auto free = std::find(inner.free().begin(), inner.free().end(), i);
       if (free != inner.free().end()) {
         const auto place = static_cast<std::size_t>(free - inner.free().begin());
-        judge(p, found.standard_errors[place], estimate);
+        judge(p, found.standard_errors[place], doubt[i], estimate);
       } else if (set_.state(i) == ParameterSet::State::kTied) {
         estimate.verdict = Verdict::kTied;
       } else if (set_.state(i) == ParameterSet::State::kFree) {
@@ -79,10 +73,11 @@ class Estimates {
       if (above_chosen(fit) > kToldApart) continue;
       const Material other =
           canonical(equivalents, fit.material, chosen_.with_phi_h).apply(fit.material);
-      alternatives_.push_back(other);
       if (other.warp.layers == report_.material.warp.layers &&
           other.weft.layers == report_.material.weft.layers) {
         equivalent_.emplace_back(warp, weft);
+      } else {
+        alternatives_.push_back(other);
       }
     }
   }
@@ -119,31 +114,16 @@ class Estimates {
                        report_.noise);
   }
 
-  void judge(const FitParameter& p, const std::optional<double>& standard_error,
+  void judge(const FitParameter& p, const std::optional<double>& standard_error, const Doubt& doubt,
              ParameterEstimate& estimate) const {
     estimate.standard_error = standard_error;
     estimate.verdict = verdict_of(p, estimate.value, standard_error);
     if (estimate.verdict != Verdict::kIdentifiable) estimate.reason = reason_of(p, report_.blind);
-    look_at_alternatives(p, estimate);
-    if (tied_ && p.of_yarn && estimate.verdict != Verdict::kIdentifiable) say_shared(p, estimate);
-  }
-
-  // What layer counts that the table cannot tell apart have to say: standard errors know only the
-  // neighbourhood of one of them.
-  void look_at_alternatives(const FitParameter& p, ParameterEstimate& estimate) const {
-    double low = estimate.value;
-    double high = estimate.value;
-    for (const Material& other : alternatives_) {
-      const double value = parameter_value(other, p);
-      low = std::min(low, value);
-      high = std::max(high, value);
+    if (doubt.verdict > estimate.verdict) {
+      estimate.verdict = doubt.verdict;
+      estimate.reason = doubt.reason;
     }
-    const double spread = std::max(high - estimate.value, estimate.value - low);
-    const Verdict verdict = verdict_of(p, estimate.value, spread);
-    if (verdict <= estimate.verdict) return;
-    estimate.verdict = verdict;
-    estimate.reason = "layer counts that fit as well have values from " + short_text(low) + " to " +
-                      short_text(high);
+    if (tied_ && p.of_yarn && estimate.verdict != Verdict::kIdentifiable) say_shared(p, estimate);
   }
 
   // Of a yarn that stands for both.

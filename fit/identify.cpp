@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "fit/doubts.h"
 #include "fit/equivalents.h"
 #include "fit/noisy_values.h"
 #include "fit/parallel.h"
@@ -147,12 +148,23 @@ class Identifier {
     const Rows few_rows =
         make_rows(few, measured_values(few, spec_, valid_, few_model, options_.fit.weighting, 0, 0),
                   row_weights(), &few_model, true, Workers(1));
-    fill_layers(Misfit(few, few_rows, kSearching, Workers(1)), set_, options_.fit, table, workers_);
+    fill_layers(Misfit(few, few_rows, kSearching, Workers(1)), set_, table, workers_);
     compare_layers(problem, truth, table, workers_);
+    std::vector<Material> others;
     for (const auto& [a, b] : table.pairs()) {
       const double chi2 =
           std::max(0.0, table.at(a, b).cost - truth.solution.cost) / (noise_ * noise_);
       report_.layers.fits.push_back({a, b, chi2, chi2 > kToldApart, false});
+      const bool own = a == truth_.warp.layers && b == truth_.weft.layers;
+      if (chi2 <= kToldApart && !own) others.push_back(table.at(a, b).material);
+    }
+    const Misfit misfit(observations_, rows_, kExact, workers_);
+    const std::vector<Doubt> doubt = doubts(misfit, set_, truth_, others, noise_);
+    for (const std::size_t i : set_.free()) {
+      VerifiedParameter& parameter = report_.parameters[i];
+      if (doubt[i].verdict <= parameter.verdict) continue;
+      parameter.verdict = doubt[i].verdict;
+      parameter.reason = doubt[i].reason;
     }
   }
 

@@ -24,6 +24,7 @@ std::vector<Node> cell_nodes(const Axis& axis, int k, bool average) {
   const double high = axis.edge_deg(k + 1);
   const double half = std::sqrt(0.6) / 2;
   std::vector<Node> nodes;
+  nodes.reserve(kCellNodes);
   const double share[kCellNodes] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
   for (int n = 0; n < kCellNodes; ++n) {
     nodes.push_back({low + (high - low) * (0.5 + (n - 1) * half), share[n]});

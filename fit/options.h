@@ -55,8 +55,8 @@ struct FitOptions {
   std::optional<double> noise;  ///< standard deviation in units of the weighting; else estimated
   Weighting weighting = Weighting::kRelative;
   Loss loss = Loss::kSquared;
-  int starts = 24;  ///< scattered starts where no start is given; up to four times as many while a
-                    ///< single one reaches the best optimum
+  int starts = 24;  ///< where no start is given; up to four times as many while the best fit does
+                    ///< not match the data and few starts agree on it
   std::uint64_t seed = 1;
 };
 

@@ -44,8 +44,8 @@ FitParameter from_row(const Row& row) {
   p.name = row.name;
   p.unit = row.unit;
   p.column = row.column;
-  p.lowest = row.lowest;
-  p.highest = row.highest;
+  p.lowest = p.widest_low = row.lowest;
+  p.highest = p.widest_high = row.highest;
   p.scatter_low = row.scatter_low;
   p.scatter_high = row.scatter_high;
   p.log_offset = row.log_offset;
@@ -54,15 +54,15 @@ FitParameter from_row(const Row& row) {
 
 // Whether `wish` names the parameter: all of it, the start of it, or that without the yarn.
 bool names(const std::string& wish, const std::string& parameter) {
+  constexpr std::array<std::string_view, 2> kYarns = {"warp.", "weft."};
   const auto leads = [](const std::string& part, std::string_view whole) {
     return whole == part || (whole.starts_with(part) && whole[part.size()] == '.');
   };
   if (leads(wish, parameter)) return true;
-  for (const char* yarn : {"warp.", "weft."}) {
-    if (parameter.starts_with(yarn) && leads(wish, std::string_view(parameter).substr(5)))
-      return true;
-  }
-  return false;
+  return std::any_of(kYarns.begin(), kYarns.end(), [&](std::string_view yarn) {
+    return parameter.starts_with(yarn) &&
+           leads(wish, std::string_view(parameter).substr(yarn.size()));
+  });
 }
 
 [[noreturn]] void refuse(const std::string& name, double value, double lowest, double highest) {
@@ -182,6 +182,12 @@ ParameterSet::ParameterSet(const FitOptions& options, std::size_t channels, bool
     }
     defaults_ = *options.start;
     started_.assign(parameters_.size(), true);
+    // A start beyond the usual bounds moves them out, as far as a material may go.
+    for (FitParameter& p : parameters_) {
+      const double value = parameter_value(defaults_, p);
+      if (value < p.lowest) p.lowest = p.widest_low = hard_range(p).first;
+      if (value > p.highest) p.highest = p.widest_high = hard_range(p).second;
+    }
   }
   for (std::size_t i = 0; i < parameters_.size(); ++i) {
     if (parameters_[i].column == kRotation && !rotatable) {
@@ -237,8 +243,10 @@ void ParameterSet::apply(const ParameterWish& wish) {
     for (const std::optional<double>& v : {wish.value, wish.lowest, wish.highest}) {
       if (v && !(*v >= lowest && *v <= highest)) refuse(p.name, *v, lowest, highest);
     }
-    if (wish.lowest) p.lowest = *wish.lowest;
-    if (wish.highest) p.highest = *wish.highest;
+    if (wish.kind == Kind::kFree || wish.kind == Kind::kFix) {
+      p.lowest = wish.lowest.value_or(p.widest_low);
+      p.highest = wish.highest.value_or(p.widest_high);
+    }
     if (!(p.lowest <= p.highest)) {
       throw InputError(p.name + ": bounds " + number_text(p.lowest) + " to " +
                        number_text(p.highest) + " hold no number");
@@ -251,8 +259,9 @@ void ParameterSet::apply(const ParameterWish& wish) {
     }
     if (wish.kind == Kind::kFix) {
       states_[i] = State::kFixed;
-      p.lowest = lowest;
-      p.highest = highest;
+      const double at = parameter_value(defaults_, p);
+      p.lowest = std::min(p.lowest, at);
+      p.highest = std::max(p.highest, at);
     }
     if (wish.kind == Kind::kFree) states_[i] = State::kFree;
     if (wish.kind == Kind::kStart && wish.value &&

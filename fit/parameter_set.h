@@ -37,8 +37,10 @@ struct FitParameter {
   LocalColumn column = kAlong;  ///< of the warp where it is a yarn's
   bool of_yarn = false;
   std::size_t channel = 0;  ///< of absorption values
-  double lowest = 0;
+  double lowest = 0;        ///< bounds
   double highest = 0;
+  double widest_low = 0;  ///< bounds where none are asked for
+  double widest_high = 0;
   double scatter_low = 0;   ///< scattered starts are drawn from here ...
   double scatter_high = 0;  ///< ... to here, evenly in the coordinate
   double log_offset = -1;   ///< coordinate log(value + offset); plain value where negative

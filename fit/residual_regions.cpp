@@ -31,7 +31,7 @@ std::size_t region_of(double lower_cosine) {
 ModelValues component(const Observations& observations, Material material, bool specular,
                       Workers workers) {
   (specular ? material.weights.internal : material.weights.specular) = 0;
-  return model_values(observations, material, kSearching, workers);
+  return model_values(observations, material, kExact, workers);
 }
 
 }  // namespace

@@ -67,13 +67,8 @@ Material scattered_start(const ParameterSet& set, const FitOptions& options,
 
 class Searcher {
  public:
-  Searcher(const Misfit& misfit, const ParameterSet& set, const FitOptions& options,
-           Workers workers)
-      : misfit_(misfit),
-        set_(set),
-        options_(options),
-        workers_(workers),
-        single_(1, workers.progress) {}
+  Searcher(const Misfit& misfit, const ParameterSet& set, Workers workers)
+      : misfit_(misfit), set_(set), workers_(workers), single_(1, workers.progress) {}
 
   Solution fit(const Material& start, const SolveLimits& limits) const {
     return solve(misfit_, set_, start, limits, single_);
@@ -156,7 +151,6 @@ class Searcher {
 
   const Misfit& misfit_;
   const ParameterSet& set_;
-  const FitOptions& options_;
   Workers workers_;
   Workers single_;
 };
@@ -244,7 +238,7 @@ Search search(const Misfit& misfit, const ParameterSet& set, const FitOptions& o
       0,
       0,
       {}};
-  const Searcher searcher(misfit, set, options, workers);
+  const Searcher searcher(misfit, set, workers);
   const bool asked = options.start.has_value();
   const auto starts = static_cast<std::size_t>(asked ? 1 : std::max(options.starts, 1));
   const auto run_start = [&](std::size_t k) {
@@ -294,9 +288,9 @@ Search search(const Misfit& misfit, const ParameterSet& set, const FitOptions& o
   return result;
 }
 
-void fill_layers(const Misfit& misfit, const ParameterSet& set, const FitOptions& options,
-                 LayerTable& table, Workers workers) {
-  Searcher(misfit, set, options, workers).fill(table);
+void fill_layers(const Misfit& misfit, const ParameterSet& set, LayerTable& table,
+                 Workers workers) {
+  Searcher(misfit, set, workers).fill(table);
 }
 
 }  // namespace clothbrdf

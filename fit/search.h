@@ -64,7 +64,6 @@ Search search(const Misfit& misfit, const ParameterSet& set, const FitOptions& o
 
 /// Every pair of counts that the table does not have, from the best outward, each from its best
 /// neighbour and from the best of all. Counts into the workers' progress.
-void fill_layers(const Misfit& misfit, const ParameterSet& set, const FitOptions& options,
-                 LayerTable& table, Workers workers);
+void fill_layers(const Misfit& misfit, const ParameterSet& set, LayerTable& table, Workers workers);
 
 }  // namespace clothbrdf

@@ -48,7 +48,9 @@ bool FitProblem::misses_data(const SettledFit& fit) const {
   const double within = static_cast<double>(fit.rows.values) - rows;
   constexpr double kEnough = 100;
   if (within < kEnough) return false;
-  const double scatter = std::max(fit.rows.constant / within, kLeastNoise * kLeastNoise);
+  // A row stands for many values, and has the rounding of all.
+  const double rounding = kLeastNoise * kLeastNoise * static_cast<double>(fit.rows.values) / rows;
+  const double scatter = std::max(fit.rows.constant / within, rounding);
   constexpr double kMuch = 2;
   return fit.solution.cost / rows > kMuch * scatter;
 }

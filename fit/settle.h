@@ -33,8 +33,8 @@ struct FitProblem {
   double noise_of(const SettledFit& fit) const;
   /// Whether the rows are left with much more than the scatter of the samples within their groups.
   bool misses_data(const SettledFit& fit) const;
-  /// Rows with weights from a material.
-  Rows rows(const Material& material, double noise, Workers workers) const;
+  /// Rows with weights from a material; `scale` is the noise where none is given.
+  Rows rows(const Material& material, double scale, Workers workers) const;
 };
 
 /// Fits `fit.rows`, then rows with weights from that fit, until a further round would move the

@@ -84,7 +84,7 @@ PlotAxis value_names(const std::string& name, const std::vector<double>& values)
       const double power = std::pow(10, std::floor(std::log10(shown)));
       shown = std::round(shown / power * kDigits) / kDigits * power;
     }
-    axis.ticks.push_back({static_cast<double>(k), short_text(shown)});
+    axis.ticks.push_back({static_cast<double>(k), tick_text(shown)});
   }
   return axis;
 }

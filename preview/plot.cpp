@@ -41,7 +41,7 @@ std::vector<Tick> linear_ticks(double lowest, double highest) {
   }
   std::vector<Tick> ticks;
   for (double k = std::ceil(lowest / step); k * step <= highest; ++k) {
-    ticks.push_back({k * step, short_text(k * step)});
+    ticks.push_back({k * step, tick_text(k * step)});
   }
   return ticks;
 }
@@ -59,7 +59,7 @@ std::vector<Tick> decade_ticks(double lowest, double highest) {
       const double at = digit * std::pow(10, decade);
       if (at < lowest || at > highest) continue;
       const bool named = digit == 1 || (few && (digit == 2 || digit == 5));
-      ticks.push_back({at, named ? short_text(at) : ""});
+      ticks.push_back({at, named ? tick_text(at) : ""});
     }
   }
   return ticks;
@@ -145,7 +145,7 @@ void draw_line(Image& image, const PlotAxis& x, const PlotAxis& y, const Curve& 
 
 }  // namespace
 
-std::string short_text(double value) {
+std::string tick_text(double value) {
   char buffer[32];
   std::snprintf(buffer, sizeof buffer, "%.4g", value);
   std::string text = buffer;

@@ -69,6 +69,6 @@ void draw_axes(Image& image, const Box& frame, const PlotTitle& title, const Plo
 Image draw_plot(const PlotTitle& title, const PlotAxis& x, const std::vector<Curve>& curves);
 
 /// A number in few letters: "0.25", "1E-9", "2E30".
-std::string short_text(double value);
+std::string tick_text(double value);
 
 }  // namespace clothbrdf

@@ -21,7 +21,7 @@ Rgb diverging(double share) {
 }
 
 std::string percent_text(double share) {
-  return (share > 0 ? "+" : "") + short_text(100 * share) + "%";
+  return (share > 0 ? "+" : "") + tick_text(100 * share) + "%";
 }
 
 std::string scale_text(double scale) {

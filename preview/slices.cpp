@@ -115,7 +115,7 @@ PlotAxis angle_axis(const Axis& axis) {
     for (int k = 0; k * step <= range; ++k) angles.push_back(axis.lowest_deg + k * step);
   }
   for (const double angle : angles) {
-    result.ticks.push_back({axis.coordinate(angle), short_text(angle)});
+    result.ticks.push_back({axis.coordinate(angle), tick_text(angle)});
   }
   return result;
 }

@@ -140,6 +140,7 @@ bool Grid::any_above_horizon(std::size_t cell) const {
 std::vector<std::uint8_t> Grid::above_horizon(CellPart part) const {
   const auto sights = [&](std::size_t axis) {
     std::vector<SinCos<double>> result;
+    result.reserve(static_cast<std::size_t>(axes[axis].size));
     for (int k = 0; k < axes[axis].size; ++k) result.push_back(sight(*this, axis, k, part));
     return result;
   };

@@ -148,12 +148,12 @@ TEST_CASE("a gap interrupts a line, and a point between gaps is a dash") {
 }
 
 TEST_CASE("numbers beside axes are short") {
-  CHECK(short_text(0.25) == "0.25");
-  CHECK(short_text(3 * 0.1) == "0.3");
-  CHECK(short_text(1e30) == "1E30");
-  CHECK(short_text(2e-9) == "2E-9");
-  CHECK(short_text(0) == "0");
-  CHECK(short_text(100) == "100");
+  CHECK(tick_text(0.25) == "0.25");
+  CHECK(tick_text(3 * 0.1) == "0.3");
+  CHECK(tick_text(1e30) == "1E30");
+  CHECK(tick_text(2e-9) == "2E-9");
+  CHECK(tick_text(0) == "0");
+  CHECK(tick_text(100) == "100");
 }
 
 }  // namespace clothbrdf::test
