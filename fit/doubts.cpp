@@ -33,11 +33,13 @@ std::vector<Doubt> doubts(const Misfit& misfit, const ParameterSet& set, const M
     double low = value;
     double high = value;
     for (const Material& other : others) {
-      low = std::min(low, parameter_value(other, p));
-      high = std::max(high, parameter_value(other, p));
+      double there = parameter_value(other, p);
+      if (p.column == kRotation) there = value + std::remainder(there - value, 180);
+      low = std::min(low, there);
+      high = std::max(high, there);
     }
     result[i].verdict = verdict_of(p, value, std::max(high - value, value - low));
-    result[i].reason = "layer counts that fit as well have values from " + short_text(low) +
+    result[i].reason = "other cloths that fit as well have values from " + short_text(low) +
                        " to " + short_text(high);
   }
   for (const Material& other : others) {
@@ -49,8 +51,8 @@ std::vector<Doubt> doubts(const Misfit& misfit, const ParameterSet& set, const M
       const FitParameter& p = set.parameters()[i];
       const Verdict verdict = verdict_of(p, parameter_value(other, p), found.standard_errors[k]);
       if (verdict <= result[i].verdict) continue;
-      result[i] = {verdict, "layer counts " + counts_of(other) +
-                                " fit as well, and with them it is known no better"};
+      result[i] = {verdict, "a cloth of " + counts_of(other) +
+                                " layers fits as well, and it is not known there"};
     }
   }
   return result;

@@ -8,13 +8,13 @@
 
 namespace clothbrdf {
 
-/// What other layer counts have to say of a parameter.
+/// What other cloths that fit as well have to say of a parameter.
 struct Doubt {
   Verdict verdict = Verdict::kIdentifiable;
   std::string reason;
 };
 
-/// Standard errors know only the neighbourhood of one fit. Where others, with other layer counts,
+/// Standard errors know only the neighbourhood of one fit. Where other cloths
 /// fit as well, a parameter is known no better than their values are alike, and no better than each
 /// of them knows it. By parameter of the set.
 std::vector<Doubt> doubts(const Misfit& misfit, const ParameterSet& set, const Material& chosen,

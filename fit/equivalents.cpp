@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "fit/misfit.h"
+#include "fit/uncertainty.h"
 
 namespace clothbrdf {
 namespace {
@@ -109,6 +110,14 @@ bool allowed(const Material& from, const Material& to, const ParameterSet& set) 
       return false;
     }
   }
+  // Ties hold of the warp and the weft.
+  for (std::size_t i = 0; i < set.parameters().size(); ++i) {
+    if (set.state(i) != ParameterSet::State::kTied) continue;
+    FitParameter warp = set.parameters()[i];
+    warp.yarn = 0;
+    if (parameter_value(to, warp) != parameter_value(to, set.parameters()[i])) return false;
+  }
+  if (set.layers_tied() && to.warp.layers != to.weft.layers) return false;
   return !(set.layers_fixed(0) && from.warp.layers != to.warp.layers) &&
          !(set.layers_fixed(1) && from.weft.layers != to.weft.layers);
 }
@@ -120,7 +129,7 @@ Material Relabelling::apply(const Material& material) const {
   for (unsigned k = 0; k < kExchangeCount; ++k) {
     if (exchanges >> k & 1U) kExchanges[k].make(result);
   }
-  if (turn_deg != 0) result.rotation_deg = into_half_turn(result.rotation_deg + turn_deg);
+  result.rotation_deg = into_half_turn(result.rotation_deg + turn_deg);
   return result;
 }
 
@@ -149,6 +158,33 @@ std::vector<Relabelling> find_equivalents(const Observations& places, const Mate
     }
   }
   return result;
+}
+
+double distance(const Material& a, const Material& b, const ParameterSet& set) {
+  double sum = 0;
+  for (const FitParameter& p : set.parameters()) {
+    const double value = parameter_value(a, p);
+    const double step = parameter_value(b, p) - value;
+    const double change =
+        (p.column == kRotation ? std::remainder(step, 180) : step) / unit_of_change(p, value);
+    sum += std::min(change * change, 1.0);
+  }
+  return sum + std::abs(a.warp.layers - b.warp.layers) + std::abs(a.weft.layers - b.weft.layers);
+}
+
+Material nearest(const std::vector<Relabelling>& equivalents, const Material& material,
+                 const Material& target, const ParameterSet& set) {
+  Material best = material;
+  double least = distance(target, material, set);
+  for (const Relabelling& relabelling : equivalents) {
+    const Material other = relabelling.apply(material);
+    if (!allowed(material, other, set)) continue;
+    if (const double d = distance(target, other, set); d < least) {
+      least = d;
+      best = other;
+    }
+  }
+  return best;
 }
 
 Relabelling canonical(const std::vector<Relabelling>& equivalents, const Material& material,

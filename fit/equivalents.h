@@ -24,6 +24,13 @@ struct Relabelling {
 std::vector<Relabelling> find_equivalents(const Observations& places, const Material& material,
                                           const ParameterSet& set);
 
+/// The relabelling of a material that comes closest to another one.
+Material nearest(const std::vector<Relabelling>& equivalents, const Material& material,
+                 const Material& target, const ParameterSet& set);
+
+/// How far apart two materials are: squares of relative changes, layers counted whole.
+double distance(const Material& a, const Material& b, const ParameterSet& set);
+
 /// The one of them that is reported: rotation in (-45, 45], then the yarn of the larger share with
 /// a <= b (of equal shares the warp); without phi_h a <= b in each yarn and the warp with the
 /// larger share.

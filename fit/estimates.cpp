@@ -61,8 +61,8 @@ class Estimates {
     constexpr std::size_t kPlaces = 40;
     const Observations places = thinned(chosen_.observations, kPlacesX, kPlaces);
     const Material& found = chosen_.fit.solution.material;
-    const std::vector<Relabelling> equivalents = find_equivalents(places, found, set_);
-    relabelling_ = canonical(equivalents, found, chosen_.with_phi_h);
+    equivalents_ = find_equivalents(places, found, set_);
+    relabelling_ = canonical(equivalents_, found, chosen_.with_phi_h);
     report_.material = relabelling_.apply(found);
     for (const Relabelling& other : find_equivalents(places, report_.material, set_)) {
       if (other.exchanges == 0 && other.turn_deg == 0) continue;
@@ -71,8 +71,7 @@ class Estimates {
     for (const auto& [warp, weft] : chosen_.layers.pairs()) {
       const Solution& fit = chosen_.layers.at(warp, weft);
       if (above_chosen(fit) > kToldApart) continue;
-      const Material other =
-          canonical(equivalents, fit.material, chosen_.with_phi_h).apply(fit.material);
+      const Material other = nearest(equivalents_, fit.material, report_.material, set_);
       if (other.warp.layers == report_.material.warp.layers &&
           other.weft.layers == report_.material.weft.layers) {
         equivalent_.emplace_back(warp, weft);
@@ -80,6 +79,38 @@ class Estimates {
         alternatives_.push_back(other);
       }
     }
+    add_simpler_cloths();
+  }
+
+  // Cloths with less to them, where they fit as well: of one yarn alone, and of two that are the
+  // same turned by a right angle.
+  void add_simpler_cloths() {
+    std::size_t share = set_.parameters().size();
+    for (const std::size_t i : set_.free()) {
+      if (set_.parameters()[i].column == kFraction) share = i;
+    }
+    if (share == set_.parameters().size()) return;
+    for (const double only : {0.0, 1.0}) {
+      Material start = report_.material;
+      set_parameter(start, set_.parameters()[share], only);
+      constexpr SolveLimits kLook{
+          .iterations = 20, .function_tolerance = 1e-6, .parameter_tolerance = 1e-9, .rounds = 0};
+      const Solution one = solve(misfit_, set_.with_fixed(share), start, kLook, Workers(1));
+      if (above_chosen(one) > kToldApart) continue;
+      add_alternative(one.material);
+      Material crossed = one.material;
+      Yarn& gone = only > 0.5 ? crossed.weft : crossed.warp;
+      gone = only > 0.5 ? crossed.warp : crossed.weft;
+      std::swap(gone.lobe_axes[0], gone.lobe_axes[1]);
+      crossed.warp_fraction = 0.5;
+      Solution both;
+      both.cost = misfit_.cost(crossed);
+      if (above_chosen(both) <= kToldApart) add_alternative(crossed);
+    }
+  }
+
+  void add_alternative(const Material& material) {
+    alternatives_.push_back(nearest(equivalents_, material, report_.material, set_));
   }
 
   double above_chosen(const Solution& fit) const {
@@ -119,6 +150,10 @@ class Estimates {
     estimate.standard_error = standard_error;
     estimate.verdict = verdict_of(p, estimate.value, standard_error);
     if (estimate.verdict != Verdict::kIdentifiable) estimate.reason = reason_of(p, report_.blind);
+    if (chosen_.misses_data && estimate.verdict == Verdict::kIdentifiable) {
+      estimate.verdict = Verdict::kWeak;
+      estimate.reason = "the model misses the data: its value is that of the nearest cloth";
+    }
     if (doubt.verdict > estimate.verdict) {
       estimate.verdict = doubt.verdict;
       estimate.reason = doubt.reason;
@@ -142,6 +177,7 @@ class Estimates {
   const ParameterSet& set_;
   FitReport& report_;
   Misfit misfit_;
+  std::vector<Relabelling> equivalents_;  // of the fit as it was found
   Relabelling relabelling_;
   std::vector<Material> alternatives_;           // of layer counts that are not told apart
   std::vector<std::pair<int, int>> equivalent_;  // those that are the chosen fit, relabelled

@@ -12,6 +12,7 @@ struct ChosenFit {
   const ParameterSet& set;
   const FitOptions& options;
   bool with_phi_h;
+  bool misses_data;  ///< then no parameter is identifiable
 };
 
 /// Fills the material, its equivalents, the parameters with their standard errors and verdicts,

@@ -106,7 +106,16 @@ class TableFit {
   }
 
   FitProblem problem(const Observations& observations, const ValueSource& source) const {
-    return {observations, source, set_, options_.weighting, options_.loss, options_.noise};
+    const bool relative = options_.weighting != Weighting::kAbsolute;
+    const StoredPrecision stored = table_.precision();
+    const double rounding = relative ? stored.relative / std::sqrt(3.0) : stored.step;
+    return {observations,
+            source,
+            set_,
+            options_.weighting,
+            options_.loss,
+            options_.noise,
+            std::max(rounding, kLeastNoise)};
   }
 
   void fit_conventions(Reflectance reflectance) {
@@ -191,9 +200,12 @@ class TableFit {
         try_one_yarn(problem, options_, with_phi_h_, chosen.fit, chosen.search.layers, workers_);
     const double estimated =
         std::sqrt(chosen.fit.chi2 / problem.degrees_of_freedom(chosen.fit.rows));
-    const double stored = table_.precision().relative / std::sqrt(3.0);
     report_.noise_estimated = !options_.noise;
-    report_.noise = std::max(problem.noise_of(chosen.fit), stored);
+    report_.noise = problem.noise_of(chosen.fit);
+    if (options_.noise && report_.noise > *options_.noise) {
+      report_.notes.push_back(
+          "the noise as given is less than the file's rounding, which is taken");
+    }
     const double unit = report_.noise * report_.noise;
     report_.chi2 = chosen.fit.chi2 / unit;
     report_.residual_rms = estimated;
@@ -211,7 +223,8 @@ class TableFit {
       report_.conventions.push_back({r.reflectance, r.paths, r.fit.chi2 / unit, is_chosen,
                                      (r.fit.chi2 - chosen.fit.chi2) / unit > kToldApart});
     }
-    report_estimates({observations, chosen.fit, chosen.search.layers, set_, options_, with_phi_h_},
+    report_estimates({observations, chosen.fit, chosen.search.layers, set_, options_, with_phi_h_,
+                      problem.misses_data(chosen.fit)},
                      workers_, report_);
     take_notes(problem, chosen);
     report_.residuals = residual_regions(observations, source, report_.material, workers_);
@@ -220,12 +233,20 @@ class TableFit {
   void take_notes(const FitProblem& problem, const ConventionResult& chosen) {
     if (problem.misses_data(chosen.fit)) {
       report_.notes.push_back(
-          "the residual is more than the scatter within cells of one half vector and theta_d: the "
-          "model does not describe all of this table, and standard errors count that as noise");
+          "the residual is more than the noise: the model does not describe all of this table, or "
+          "its bounds or the range of layers leave the right cloth out, or (averages) cells are "
+          "too "
+          "coarse for it");
     }
     if (report_.starts > 1 && report_.starts_at_best == 1) {
       report_.notes.push_back(
           "one start alone reached the best optimum: with more starts there may be a better one");
+    }
+    if (report_.material.warp.scatter_limit || report_.material.weft.scatter_limit) {
+      report_.notes.push_back("scatter_limit is not fitted: it is kept as the start has it");
+    }
+    if (!chosen.fit.settled) {
+      report_.notes.push_back("the weights, which come from the fit, had not settled at the end");
     }
     constexpr double kFar = 0.5;
     if (options_.weighting != Weighting::kAbsolute && report_.residual_rms > kFar) {

@@ -56,6 +56,7 @@ class Identifier {
         truth_(without_effects(spec, material, options_.fit)),
         workers_(workers),
         noise_(options.fit.noise.value_or(kDefaultNoise)),
+        asked_(asked_set(spec, truth_, options_.fit)),
         set_(identified_set(spec, truth_, options_.fit)),
         observations_(observe(spec, material.reflectance, workers)),
         model_(model_values(observations_, truth_, kExact, workers)) {}
@@ -108,9 +109,9 @@ class Identifier {
         if (parameter.verdict != Verdict::kIdentifiable) {
           parameter.reason = reason_of(p, report_.blind);
         }
-      } else if (set_.state(i) == ParameterSet::State::kTied) {
+      } else if (asked_.state(i) == ParameterSet::State::kTied) {
         parameter.verdict = Verdict::kTied;
-      } else if (lies_at_bound(set_, i, truth_)) {
+      } else if (asked_.state(i) == ParameterSet::State::kFree) {
         parameter.verdict = Verdict::kAtBound;
         parameter.reason = "its value lies on the bound of what is fitted";
       }
@@ -259,17 +260,54 @@ class Identifier {
   Material truth_;           // what the table shows of the material
   Workers workers_;
   double noise_;
-  ParameterSet set_;
+  ParameterSet asked_;
+  ParameterSet set_;  // less what lies on its bound
   Observations observations_;
   ModelValues model_;
   Rows rows_;
   IdentifyReport report_;
 };
 
+// Values come from the material that is looked at.
+void check_known(const TableSpec& spec, const Material& material, const ParameterWish& wish) {
+  FitOptions alone;
+  alone.start = material;
+  alone.wishes = {wish};
+  const ParameterSet set(alone, material.channel_count(), has_phi_h(spec));
+  for (const FitParameter& p : set.parameters()) {
+    if (parameter_value(set.defaults(), p) != parameter_value(material, p) &&
+        p.column != kRotation) {
+      throw InputError(p.name + ": the material has another value than the one to fix it at");
+    }
+  }
+}
+
+void check_ties(const ParameterSet& set, const Material& material) {
+  for (std::size_t i = 0; i < set.parameters().size(); ++i) {
+    const FitParameter& p = set.parameters()[i];
+    FitParameter warp = p;
+    warp.yarn = 0;
+    if (set.state(i) == ParameterSet::State::kTied &&
+        parameter_value(material, warp) != parameter_value(material, p)) {
+      throw InputError(p.name + ": tied, and yet the material's yarns differ in it");
+    }
+  }
+  if (set.layers_tied() && material.warp.layers != material.weft.layers) {
+    throw InputError("layers: tied, and yet the material's yarns differ in them");
+  }
+}
+
 void check(const TableSpec& spec, const Material& material, const IdentifyOptions& options) {
   if (spec.channels.size() != material.channel_count()) {
     throw InputError("identify: a table of the channels' totals is needed, without components");
   }
+  if (options.refits == 1) {
+    throw InputError("refits: 1 has no spread; 0, or 2 and more");
+  }
+  for (const ParameterWish& wish : options.fit.wishes) {
+    if (wish.kind == ParameterWish::Kind::kFix && wish.value) check_known(spec, material, wish);
+  }
+  check_ties(asked_set(spec, material, options.fit), material);
   if (options.fit.noise && !(*options.fit.noise > 0 && std::isfinite(*options.fit.noise))) {
     throw InputError("noise: a number above 0 is needed");
   }

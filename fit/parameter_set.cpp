@@ -181,6 +181,8 @@ ParameterSet::ParameterSet(const FitOptions& options, std::size_t channels, bool
                        " channels; the table has " + std::to_string(channels));
     }
     defaults_ = *options.start;
+    // The cloth looks the same turned by half a turn.
+    defaults_.rotation_deg = std::remainder(defaults_.rotation_deg, 180);
     started_.assign(parameters_.size(), true);
     // A start beyond the usual bounds moves them out, as far as a material may go.
     for (FitParameter& p : parameters_) {
@@ -228,7 +230,14 @@ void ParameterSet::apply(const ParameterWish& wish) {
       layers = static_cast<int>(*wish.value);
     }
     if (wish.kind == Kind::kFix) layers_fixed_[yarn] = true;
-    if (wish.kind == Kind::kFree) layers_fixed_[yarn] = false;
+    if (wish.kind == Kind::kFree) {
+      if (!whole_yarn && (wish.lowest || wish.highest)) {
+        throw InputError(wish.name + ": the range of layer counts is asked for with --layers");
+      }
+      layers_fixed_[yarn] = false;
+      layers_tied_ = false;
+    }
+    layers_started_[yarn] = layers_started_[yarn] || (wish.value && !whole_yarn);
   }
   for (std::size_t i = 0; i < parameters_.size(); ++i) {
     FitParameter& p = parameters_[i];
@@ -236,7 +245,7 @@ void ParameterSet::apply(const ParameterWish& wish) {
     found = true;
     if (wish.kind == Kind::kTie) {
       if (!p.of_yarn) throw InputError(wish.name + ": only parameters of yarns can be tied");
-      if (p.yarn == 1) states_[i] = State::kTied;
+      states_[p.yarn == 1 ? i : partner(i)] = State::kTied;
       continue;
     }
     const auto [lowest, highest] = hard_range(p);
@@ -287,6 +296,17 @@ void ParameterSet::tie_layers() {
   if (layers_fixed_[1]) warp = weft;
   weft = warp;
   layers_fixed_[0] = layers_fixed_[1] = layers_fixed_[0] || layers_fixed_[1];
+}
+
+std::size_t ParameterSet::partner(std::size_t warp) const {
+  const FitParameter& p = parameters_[warp];
+  for (std::size_t i = 0; i < parameters_.size(); ++i) {
+    const FitParameter& weft = parameters_[i];
+    if (weft.of_yarn && weft.yarn == 1 && weft.column == p.column && weft.channel == p.channel) {
+      return i;
+    }
+  }
+  throw std::logic_error("no weft of " + p.name);
 }
 
 void ParameterSet::index_free() {

@@ -80,6 +80,8 @@ class ParameterSet {
   /// Whether a layer count was fixed; then it is the one of defaults().
   bool layers_fixed(std::size_t yarn) const { return layers_fixed_[yarn]; }
   bool layers_tied() const { return layers_tied_; }
+  /// Whether the first start has the count of defaults().
+  bool layers_started(std::size_t yarn) const { return layers_started_[yarn]; }
 
   /// The same with one more parameter fixed, where the material has it.
   ParameterSet with_fixed(std::size_t parameter) const;
@@ -103,6 +105,7 @@ class ParameterSet {
  private:
   void apply(const ParameterWish& wish);
   void tie_layers();
+  std::size_t partner(std::size_t warp) const;  // of the weft
   void index_free();
 
   std::size_t channels_;
@@ -110,6 +113,7 @@ class ParameterSet {
   std::vector<State> states_;
   std::vector<bool> started_;
   std::array<bool, 2> layers_fixed_{};
+  std::array<bool, 2> layers_started_{};
   bool layers_tied_ = false;
   Material defaults_;
   std::vector<std::size_t> free_;

@@ -60,11 +60,15 @@ bool lies_at_bound(const ParameterSet& set, std::size_t parameter, const Materia
   return value <= p.lowest + kNear * std::abs(p.lowest) || value >= p.highest - kNear * p.highest;
 }
 
-ParameterSet identified_set(const TableSpec& spec, const Material& material,
-                            const FitOptions& options) {
+ParameterSet asked_set(const TableSpec& spec, const Material& material, const FitOptions& options) {
   FitOptions at_truth = options;
   at_truth.start = material;
-  ParameterSet set(at_truth, material.channel_count(), has_phi_h(spec));
+  return ParameterSet(at_truth, material.channel_count(), has_phi_h(spec));
+}
+
+ParameterSet identified_set(const TableSpec& spec, const Material& material,
+                            const FitOptions& options) {
+  ParameterSet set = asked_set(spec, material, options);
   const std::vector<std::size_t> free = set.free();
   for (const std::size_t i : free) {
     if (lies_at_bound(set, i, material)) set = set.with_fixed(i);

@@ -23,11 +23,12 @@ bool has_phi_h(const TableSpec& spec);
 /// layers) is fixed in the options.
 Material without_effects(const TableSpec& spec, const Material& material, FitOptions& options);
 
-/// What is free where a table of the material is looked at: what the options free, less what lies
-/// on its bound, where no derivative tells of both sides.
+/// What the options free where a table of the material is looked at.
+ParameterSet asked_set(const TableSpec& spec, const Material& material, const FitOptions& options);
+
+/// The same, less what lies on its bound, where no derivative tells of both sides.
 ParameterSet identified_set(const TableSpec& spec, const Material& material,
                             const FitOptions& options);
-bool lies_at_bound(const ParameterSet& set, std::size_t parameter, const Material& material);
 
 /// What other grids, less noise, and knowing one thing from elsewhere would settle, each by the
 /// predicted standard errors; the least effort first.

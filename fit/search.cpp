@@ -58,6 +58,7 @@ Material scattered_start(const ParameterSet& set, const FitOptions& options,
     const LayerRange range = layer_range(set, options, yarn);
     // At least one: without layers most parameters have no effect to start from.
     const int fewest = std::min(std::max(range.fewest, 1), range.most);
+    if (number == 0 && set.layers_started(yarn)) continue;
     int& layers = (yarn == 0 ? material.warp : material.weft).layers;
     layers = std::min(fewest + static_cast<int>(u * (range.most - fewest + 1)), range.most);
   }

@@ -9,7 +9,7 @@ namespace clothbrdf {
 namespace {
 
 // Rounds of weights from the current fit.
-constexpr int kMostRounds = 12;
+constexpr int kMostRounds = 20;
 
 // Of the noise: a change of the table that does not count.
 constexpr double kSettled = 1e-3;
@@ -36,22 +36,26 @@ double FitProblem::degrees_of_freedom(const Rows& rows) const {
 }
 
 double FitProblem::noise_of(const SettledFit& fit) const {
-  if (noise) return std::max(*noise, kLeastNoise);
+  if (noise) return std::max(*noise, rounding);
   const double free = static_cast<double>(set.free().size());
   const double rows = std::max(1.0, static_cast<double>(fit.rows.row_count()) - free);
   const double square = std::max(fit.chi2 / degrees_of_freedom(fit.rows), fit.solution.cost / rows);
-  return std::max(std::sqrt(square), kLeastNoise);
+  return std::max(std::sqrt(square), rounding);
 }
 
 bool FitProblem::misses_data(const SettledFit& fit) const {
   const auto rows = static_cast<double>(fit.rows.row_count());
   const double within = static_cast<double>(fit.rows.values) - rows;
   constexpr double kEnough = 100;
+  constexpr double kMuch = 4;
+  if (noise) {
+    const double expected = std::max(*noise, rounding) * std::max(*noise, rounding);
+    return fit.solution.cost > kMuch * expected * (rows + kEnough);
+  }
   if (within < kEnough) return false;
-  // A row stands for many values, and has the rounding of all.
-  const double rounding = kLeastNoise * kLeastNoise * static_cast<double>(fit.rows.values) / rows;
-  const double scatter = std::max(fit.rows.constant / within, rounding);
-  constexpr double kMuch = 2;
+  // A row stands for many values, whose rounding may be alike.
+  const double alike = rounding * rounding * static_cast<double>(fit.rows.values) / rows;
+  const double scatter = std::max(fit.rows.constant / within, alike);
   return fit.solution.cost / rows > kMuch * scatter;
 }
 
@@ -69,6 +73,7 @@ SolveLimits to_the_end(const Rows& rows, double noise) {
 
 void settle(const FitProblem& problem, SettledFit& fit, Workers workers) {
   double noise = 0;
+  fit.settled = false;
   for (int round = 0; round < kMostRounds; ++round) {
     const Solution before = fit.solution;
     if (round > 0) fit.rows = problem.rows(before.material, noise, workers);
@@ -81,8 +86,10 @@ void settle(const FitProblem& problem, SettledFit& fit, Workers workers) {
     if (!std::isfinite(fit.chi2)) return;
     noise = std::sqrt(fit.chi2 / problem.degrees_of_freedom(fit.rows));
     if (round > 0 &&
-        moved(before.material, fit.solution.material, misfit, problem.set, noise) < kSettled)
+        moved(before.material, fit.solution.material, misfit, problem.set, noise) < kSettled) {
+      fit.settled = true;
       break;
+    }
   }
 }
 

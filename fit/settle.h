@@ -15,6 +15,7 @@ struct SettledFit {
   Solution solution;
   Rows rows;
   double chi2 = 0;  ///< of all values, not over the noise
+  bool settled = false;
 };
 
 /// What is fitted: the table's values, how they are weighted and which parameters are free. Holds
@@ -25,13 +26,15 @@ struct FitProblem {
   const ParameterSet& set;
   Weighting weighting = Weighting::kRelative;
   Loss loss = Loss::kSquared;
-  std::optional<double> noise;  ///< where it is known
+  std::optional<double> noise;    ///< where it is known
+  double rounding = kLeastNoise;  ///< of the values as stored, in units of the weighting
 
   double degrees_of_freedom(const Rows& rows) const;
   /// The noise, as given or as the residual says. What the model cannot follow is alike within a
   /// group of cells and counts once for it, not once for each of its samples.
   double noise_of(const SettledFit& fit) const;
-  /// Whether the rows are left with much more than the scatter of the samples within their groups.
+  /// Whether the fit is left with much more than the noise that is given, or its rows with much
+  /// more than the scatter of the samples within their groups.
   bool misses_data(const SettledFit& fit) const;
   /// Rows with weights from a material; `scale` is the noise where none is given.
   Rows rows(const Material& material, double scale, Workers workers) const;

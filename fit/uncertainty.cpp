@@ -89,8 +89,10 @@ Uncertainty uncertainty(const Eigen::MatrixXd& triangle, const ParameterSet& set
   result.condition = bottom > kRounding * top ? top / bottom : 0;
   for (std::size_t k = 0; k < count; ++k) {
     const double error = std::sqrt(variance[static_cast<Eigen::Index>(k)]) * units[k];
+    // A number that is larger than any thinkable value says no more than none.
+    constexpr double kMost = 1000;
     const bool visible = lengths[static_cast<Eigen::Index>(k)] > kRounding * kRounding * longest;
-    if (!unseen[k] && visible && std::isfinite(error)) result.standard_errors[k] = error;
+    if (!unseen[k] && visible && error <= kMost * units[k]) result.standard_errors[k] = error;
   }
 
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(jacobian, Eigen::ComputeThinV);

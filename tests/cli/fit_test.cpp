@@ -75,7 +75,8 @@ TEST_CASE("fit finds the material of a table that was made from one") {
   // The same table comes from it.
   const std::string again = (folder / "again.exr").string();
   output_of({"tabulate", fitted, "-o", again, "--grid", "halfdiff3d:12x12x24"});
-  for (const json& channel : json_of({"compare", table, again})["channels"]) {
+  const json compared = json_of({"compare", table, again});
+  for (const json& channel : compared["channels"]) {
     CHECK(channel["rms"].get<double>() < 1e-6);
   }
 }
@@ -118,7 +119,8 @@ TEST_CASE("of options for one parameter the last counts, and the command line be
   write_file(folder / "fit.json", R"({"parameters": {"warp.scatter": {"fix": 0.25}}})");
   const std::string file = (folder / "fit.json").string();
   const auto verdict = [&](const Arguments& more) {
-    for (const json& p : json_of(fit(table, more))["parameters"]) {
+    const json report = json_of(fit(table, more));
+    for (const json& p : report["parameters"]) {
       if (p["name"] == "warp.scatter") return p["verdict"].get<std::string>();
     }
     return std::string("not there");
