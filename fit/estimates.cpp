@@ -158,14 +158,14 @@ class Estimates {
       estimate.verdict = doubt.verdict;
       estimate.reason = doubt.reason;
     }
-    if (tied_ && p.of_yarn && estimate.verdict != Verdict::kIdentifiable) say_shared(p, estimate);
+    if (tied_ && estimate.verdict != Verdict::kIdentifiable) say_shared(p, estimate);
   }
 
   // Of a yarn that stands for both.
   void say_shared(const FitParameter& p, ParameterEstimate& estimate) const {
     for (std::size_t k = 0; k < tied_->free().size(); ++k) {
       const FitParameter& both = tied_->parameters()[tied_->free()[k]];
-      if (both.of_yarn && both.column == p.column && both.channel == p.channel &&
+      if (both.of_yarn == p.of_yarn && both.column == p.column && both.channel == p.channel &&
           shared_.standard_errors[k]) {
         estimate.reason += "; if the yarns are equal, its standard error is " +
                            short_text(*shared_.standard_errors[k]);
