@@ -198,13 +198,16 @@ std::vector<std::string> FitFlags::inputs() const {
 }
 
 void add_parameter_options(CLI::App& command, FitFlags& flags) {
-  add_wish_option(command, flags, Kind::kFix, "NAME[=VALUE]",
-                  "does not fit a parameter, warp.scatter, or all that a part of a name stands "
-                  "for, warp or absorption; at its start where no value is given");
+  add_wish_option(
+      command, flags, Kind::kFix, "NAME[=VALUE]",
+      "does not fit a parameter, warp.scatter, or all that a part of a name stands "
+      "for, warp or absorption; at its start where no value is given. layers, and those "
+      "that a yarn's name stands for, are 3 where there is no start");
   add_wish_option(command, flags, Kind::kFree, "NAME[=LO:HI]",
                   "fits it, between these values where they are given; of several wishes for one "
                   "parameter the last counts");
-  add_wish_option(command, flags, Kind::kTie, "NAME", "the weft's value is the warp's");
+  add_wish_option(command, flags, Kind::kTie, "NAME",
+                  "the weft's value is the warp's; weft stands for all of it, its layers too");
   add_text_option(command, "--layers", flags.layers, "LO:HI",
                   "layer counts to try, 0 to 64; 0:8 where left out");
   add_text_option(command, "--noise", flags.noise, "X",
@@ -232,7 +235,7 @@ void add_solver_options(CLI::App& command, FitFlags& flags) {
                   "how much outliers count: squared (the default), huber or cauchy");
   add_text_option(
       command, "--starts", flags.starts, "N",
-      "scattered starts where no start is given, 0 to 10000; 24 where left out. Up to four "
+      "scattered starts where no start is given, 1 to 10000; 24 where left out. Up to four "
       "times as many are made while the best fit does not match the data");
 }
 
@@ -253,7 +256,7 @@ FitOptions read_fit_options(const FitFlags& flags, const std::vector<Channel>& c
   if (flags.loss) options.loss = parse_choice("--loss", *flags.loss, kLossNames);
   if (flags.starts) {
     options.starts =
-        static_cast<int>(parse_number("--starts", *flags.starts, {0, kMostStarts, true}));
+        static_cast<int>(parse_number("--starts", *flags.starts, {1, kMostStarts, true}));
   }
   if (flags.seed) {
     options.seed =

@@ -37,7 +37,7 @@ std::vector<double> parse_range(const std::string& text, const std::string& rang
   std::istringstream parts(range);
   std::vector<std::string> fields;
   for (std::string field; std::getline(parts, field, ':');) fields.push_back(field);
-  if (fields.size() != 3) throw refusal(text);
+  if (fields.size() != 3 || range.ends_with(':')) throw refusal(text);
   const double low = parse_number("--sweep", fields[0], {lowest, highest, false});
   const double high = parse_number("--sweep", fields[1], {lowest, highest, false});
   const double count = parse_number("--sweep", fields[2], {2, kMostSteps, true});
@@ -48,6 +48,7 @@ std::vector<double> parse_range(const std::string& text, const std::string& rang
 }  // namespace
 
 Sweep parse_sweep(const std::string& text) {
+  if (text.ends_with(',')) throw refusal(text);
   Sweep sweep;
   std::istringstream parts(text);
   for (std::string part; std::getline(parts, part, ',');) {

@@ -180,7 +180,7 @@ TEST_CASE("fit refuses options that make no sense, in one line that says what is
       {{"--noise", "0"}, "--noise: '0' is not allowed: a number from "},
       {{"--weighting", "log"}, "relative, absolute, logarithmic"},
       {{"--loss", "l1"}, "--loss: 'l1' is not allowed: squared, huber, cauchy"},
-      {{"--starts", "-1"}, "--starts: '-1' is not allowed: a whole number from 0 to 10000"},
+      {{"--starts", "-1"}, "--starts: '-1' is not allowed: a whole number from 1 to 10000"},
       {{"--seed", "1e16"}, "--seed: '1e16' is not allowed: a whole number from 0 to "},
       {{"--threads", "0"}, "--threads: "},
       {{"--options", none}, none + ": there is no such file"},

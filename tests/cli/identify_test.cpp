@@ -147,6 +147,8 @@ TEST_CASE("identify refuses what makes no sense, in one line") {
       {{kSilk, "--sweep", sweep, "--noise", "0.1"}, "--noise: not with --sweep"},
       {{kSilk, "--sweep", "noise=0.001:0.1:2"}, allowed},
       {{kSilk, "--sweep", sweep + ",noise=1:2:2"}, allowed},
+      {{kSilk, "--sweep", sweep + ","}, allowed},
+      {{kSilk, "--sweep", sweep + ":"}, allowed},
       {{kSilk, "--sweep", "absorption=2:1:2,noise=0.001:0.1:2"}, allowed},
       {{kSilk, "--sweep", "absorption=1:2,noise=0.001:0.1:2"}, allowed},
       {{kSilk, "--sweep", "absorption=0:2:2,noise=0.001:0.1:2"}, "--sweep: '0' is not allowed"},

@@ -147,7 +147,7 @@ TEST_CASE("a fit file is refused in one line with pointer, value and what is all
         "/noise: 0 is not allowed: a number from 1e-12 to 1000000000000");
   CHECK(refusal(R"({"loss": 2})") ==
         "/loss: 2 is not allowed: \"squared\" or \"huber\" or \"cauchy\"");
-  CHECK(refusal(R"({"starts": 1.5})") == "/starts: 1.5 is not allowed: an integer from 0 to 10000");
+  CHECK(refusal(R"({"starts": 1.5})") == "/starts: 1.5 is not allowed: an integer from 1 to 10000");
   CHECK_THAT(refusal(R"({"seed": 9007199254740993})"), ContainsSubstring("/seed: "));
   CHECK(refusal(R"({"start": 3})") == "/start: 3 is not allowed: a string or an object");
 }
