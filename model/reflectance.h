@@ -45,8 +45,9 @@ T diffuse_reflectance(const BasicMaterial<T>& material, std::size_t channel) {
   const auto colour = [&](const BasicYarn<T>& yarn) {
     return diffuse_colour(yarn.absorption[channel], material.diffuse_path);
   };
-  const T sum = material.weights.diffuse * (material.warp_fraction * colour(material.warp) +
-                                            (T(1) - material.warp_fraction) * colour(material.weft));
+  const T sum =
+      material.weights.diffuse * (material.warp_fraction * colour(material.warp) +
+                                  (T(1) - material.warp_fraction) * colour(material.weft));
   return material.reflectance == Reflectance::kMicrofacet ? T(sum / pi<T>()) : sum;
 }
 

@@ -18,7 +18,7 @@ FitReport fit(const Table& table, const FitOptions& base = {}) {
   FitOptions options = base;
   options.starts = 3;
   options.most_layers = 2;
-  const FitReport report = fit_table(table, options, 1);
+  FitReport report = fit_table(table, options, 1);
   INFO(report.failure);
   CHECK(not_finite(report) == "");
   CHECK(report.seconds <= kMostSeconds);
@@ -50,7 +50,7 @@ TEST_CASE("tables without a value or without light are refused in words") {
   const auto same = [](double value) {
     return cloth(kSmall, [=](std::size_t, double) { return value; });
   };
-  CHECK(fit(same(0)).failure.find("0") != std::string::npos);
+  CHECK(fit(same(0)).failure.find('0') != std::string::npos);
   for (const double value : {-1.0, kNaN, kInfinity, -kInfinity}) {
     INFO(value);
     CHECK(fit(same(value)).failure.find("no cell") != std::string::npos);

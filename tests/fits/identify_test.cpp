@@ -21,7 +21,8 @@ Material preset(const std::string& name) {
   return read_material(CLOTHBRDF_SOURCE_DIR "/materials/" + name + ".json");
 }
 
-IdentifyReport identified(const Material& material, const Grid& grid, IdentifyOptions options) {
+IdentifyReport identified(const Material& material, const Grid& grid,
+                          const IdentifyOptions& options) {
   return identify(material_spec(material, {}, grid), material, {}, options, 2);
 }
 

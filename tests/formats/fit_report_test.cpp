@@ -185,7 +185,7 @@ TEST_CASE("a text is laid out in lines of 100 columns, and holds what it was mad
   }
   CHECK_THAT(text, ContainsSubstring("\n      {\"warp\": 3, \"weft\": 4, \"chi2\": 20.0, "
                                      "\"told\": true, "
-              "\"equivalent\": false},\n"));
+                                     "\"equivalent\": false},\n"));
   CHECK_THAT(text, Catch::Matchers::EndsWith("\n}\n"));
   const nlohmann::ordered_json value = {
       {"b", {1, -0.5, true, nullptr}}, {"a", nlohmann::ordered_json::object()}, {"", "x\ty"}};
