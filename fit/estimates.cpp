@@ -93,9 +93,16 @@ class Estimates {
     for (const double only : {0.0, 1.0}) {
       Material start = report_.material;
       set_parameter(start, set_.parameters()[share], only);
+      // A few steps show whether it comes anywhere near.
+      constexpr SolveLimits kGlance{
+          .iterations = 3, .function_tolerance = 1e-3, .parameter_tolerance = 1e-9, .rounds = 0};
       constexpr SolveLimits kLook{
           .iterations = 20, .function_tolerance = 1e-6, .parameter_tolerance = 1e-9, .rounds = 0};
-      const Solution one = solve(misfit_, set_.with_fixed(share), start, kLook, Workers(1));
+      constexpr double kNowhereNear = 1000;
+      const ParameterSet others = set_.with_fixed(share);
+      Solution one = solve(misfit_, others, start, kGlance, Workers(1));
+      if (above_chosen(one) > kNowhereNear * kToldApart) continue;
+      one = solve(misfit_, others, one.material, kLook, Workers(1));
       if (above_chosen(one) > kToldApart) continue;
       add_alternative(one.material);
       Material crossed = one.material;

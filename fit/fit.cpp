@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 
 #include "fit/estimate.h"
 #include "fit/estimates.h"
@@ -126,7 +127,7 @@ class TableFit {
     const ValueSource source = table_values(table_, observations);
     // Robust losses begin once there is a fit to be robust about.
     const RowWeights first = {options_.weighting, Loss::kSquared, 0};
-    const Rows rows = make_rows(observations, source, first, nullptr, true, workers_);
+    const Rows rows = first_rows(observations, source, first, reflectance);
     report_.below_horizon = observations.below_horizon;
     report_.masked = rows.masked;
     report_.values = rows.values;
@@ -169,6 +170,24 @@ class TableFit {
       if (result.fit.chi2 < chosen_chi2()) chosen_ = results_.size();
       results_.push_back(std::move(result));
     }
+  }
+
+  // Rows with weights from the start that was asked for, where that is near; else from smoothed
+  // values.
+  Rows first_rows(const Observations& observations, const ValueSource& source,
+                  const RowWeights& weights, Reflectance reflectance) const {
+    if (options_.start && weights.weighting == Weighting::kRelative) {
+      Material start = set_.defaults();
+      start.reflectance = reflectance;
+      start.paths = options_.paths.front();
+      const ModelValues values = model_values(observations, start, kExact, workers_);
+      Rows rows = make_rows(observations, source, weights, &values, true, workers_);
+      const double square =
+          rows.constant + Misfit(observations, rows, kExact, workers_).cost(start);
+      constexpr double kNear = 0.1;
+      if (square <= kNear * kNear * static_cast<double>(rows.values)) return rows;
+    }
+    return make_rows(observations, source, weights, nullptr, true, workers_);
   }
 
   double chosen_chi2() const { return results_.empty() ? kInfinity : results_[chosen_].fit.chi2; }
@@ -278,7 +297,13 @@ FitReport fit_table(const Table& table, const FitOptions& options, Workers worke
     throw InputError("noise: a number above 0 is needed");
   }
   FitReport report;
-  const Table totals = without_components(table);
+  const std::vector<Channel>& channels = table.spec().channels;
+  std::optional<Table> without;
+  if (std::any_of(channels.begin(), channels.end(),
+                  [](const Channel& c) { return c.part != Part::kTotal; })) {
+    without.emplace(without_components(table));
+  }
+  const Table& totals = without ? *without : table;
   with_threads(workers.threads, [&] { report = TableFit(totals, options, workers).run(); });
   return report;
 }

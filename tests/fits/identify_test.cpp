@@ -114,7 +114,7 @@ TEST_CASE("a tie that the material contradicts is refused, and one refit, too") 
   CHECK_THROWS_AS(identified(preset("tamamushi"), halfdiff3d(8, 8, 8), options), InputError);
 }
 
-TEST_CASE("a fit keeps ties and turns the cloth into (-45, 45] degrees") {
+TEST_CASE("a fit keeps ties and turns the cloth to less than 45 degrees") {
   Material cloth = preset("tamamushi");
   cloth.weft.lobe_axes = {0.4, 0.15};
   cloth.rotation_deg = 20;
