@@ -14,9 +14,9 @@ struct Doubt {
   std::string reason;
 };
 
-/// Standard errors know only the neighbourhood of one fit. Where other cloths
-/// fit as well, a parameter is known no better than their values are alike, and no better than each
-/// of them knows it. By parameter of the set.
+/// Standard errors know only the neighbourhood of one fit. Where other cloths fit as well, a
+/// parameter is known no better than their values are alike, and no better than each of them knows
+/// it. By parameter of the set.
 std::vector<Doubt> doubts(const Misfit& misfit, const ParameterSet& set, const Material& chosen,
                           const std::vector<Material>& others, double noise);
 
