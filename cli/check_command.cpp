@@ -31,7 +31,7 @@ std::string short_number(double value) {
 }
 
 std::string where(const TableSpec& spec, const TableValue& at) {
-  return full_name(spec.channels[at.channel]) + " at " + spec.grid().place(at.cell);
+  return full_name(spec.channels[at.channel]) + " at " + spec.place(at.cell);
 }
 
 std::string flaw_text(const TableSpec& spec, const Flaw& flaw, const char* which) {
@@ -104,7 +104,7 @@ void print_text(const CheckOptions& options, const TableSpec& spec, const TableC
   const auto line = [](const char* name, const std::string& text) {
     std::cout << "  " << std::left << std::setw(18) << name << text << '\n';
   };
-  std::cout << options.file << ": " << spec.grid().description() << ", " << with_commas(check.cells)
+  std::cout << options.file << ": " << spec.description() << ", " << with_commas(check.cells)
             << " cells of " << spec.channels.size() << " channels\n";
   line("below the horizon", with_commas(check.below_horizon) + " cells");
   line("not finite", flaw_text(spec, check.not_finite, "the first is"));
@@ -131,7 +131,7 @@ Json value_json(const TableSpec& spec, const TableValue& at) {
   return {{"value", at.value},
           {"channel", full_name(spec.channels[at.channel])},
           {"cell", at.cell},
-          {"place", spec.grid().place(at.cell)}};
+          {"place", spec.place(at.cell)}};
 }
 
 Json flaw_json(const TableSpec& spec, const Flaw& flaw) {
@@ -149,7 +149,7 @@ Json albedo_json(const TableSpec& spec, const Albedo& a) {
 
 void print_json(const CheckOptions& options, const TableSpec& spec, const TableCheck& check) {
   Json json = {{"file", options.file},
-               {"grid", spec.grid().description()},
+               {"grid", spec.description()},
                {"cells", check.cells},
                {"below_horizon", check.below_horizon},
                {"masked", check.masked},

@@ -42,7 +42,7 @@ void print_text(const CompareOptions& options, const Table& a, const Comparison&
 void print_json(const CompareOptions& options, const Table& a, const Comparison& comparison) {
   Json json = {{"a", options.a},
                {"b", options.b},
-               {"grid", a.spec().grid().description()},
+               {"grid", a.spec().description()},
                {"cells", comparison.cells},
                {"only_a", comparison.only_a},
                {"channels", Json::array()}};
@@ -53,7 +53,7 @@ void print_json(const CompareOptions& options, const Table& a, const Comparison&
                                 {"max", d.max},
                                 {"worst",
                                  {{"cell", d.worst_cell},
-                                  {"place", a.spec().grid().place(d.worst_cell)},
+                                  {"place", a.spec().place(d.worst_cell)},
                                   {"a", d.a},
                                   {"b", d.b}}}});
   }

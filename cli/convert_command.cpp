@@ -51,10 +51,11 @@ struct Target {
 Target choose_target(const ConvertOptions& options, const TableSpec& source,
                      const Workers& workers) {
   const Format& format = format_for(options.out);
-  const WriteOptions write{options.half, options.compress, workers};
+  const WriteOptions write{.half = options.half, .compress = options.compress, .workers = workers};
   const bool paper =
       source.provenance.material && source.provenance.material->reflectance == Reflectance::kPaper;
-  const Grid standard = format.default_grid(paper ? Reflectance::kPaper : Reflectance::kMicrofacet);
+  const Grid standard = std::get<Grid>(format.default_samples(
+      paper ? Reflectance::kPaper : Reflectance::kMicrofacet, source.isotropic()));
   std::vector<Grid> grids = {source.grid(), standard};
   if (options.grid) grids = {parse_grid(*options.grid, standard.axes.back().highest_deg)};
   for (const Grid& grid : grids) {
@@ -65,7 +66,7 @@ Target choose_target(const ConvertOptions& options, const TableSpec& source,
         std::erase_if(spec.channels, [](const Channel& c) { return c.part != Part::kTotal; });
       }
       try {
-        format.check(spec, write, options.out);
+        check_output(format, spec, write, options.out);
         return {&format, write, grid, components && holds_components(source)};
       } catch (const InputError&) {
         if (!components && &grid == &grids.back()) throw;
@@ -87,7 +88,7 @@ std::vector<std::string> what_is_lost(const Table& source, const Target& target)
     lost.emplace_back("the order of the directions: the mean of f(wi,wo) and f(wo,wi)");
   }
   if (spec.grid() != target.grid) {
-    lost.push_back("the nodes: resampled from " + spec.grid().description() + " to " +
+    lost.push_back("the nodes: resampled from " + spec.description() + " to " +
                    target.grid.description() + ", linear between nodes");
     if (spec.cells.average) lost.emplace_back("the averages over cells: values at nodes");
   }
@@ -134,7 +135,7 @@ void report(const ConvertOptions& options, const Target& target, const Table& ta
     Json json = {{"file", options.out},
                  {"from", options.in},
                  {"format", target.format->name},
-                 {"grid", spec.grid().description()},
+                 {"grid", spec.description()},
                  {"cells", spec.cell_count()},
                  {"channels", spec.channels.size()},
                  {"bytes", bytes},
@@ -143,8 +144,8 @@ void report(const ConvertOptions& options, const Target& target, const Table& ta
     std::cout << json.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
     return;
   }
-  std::cout << options.out << ": " << target.format->name << ' ' << spec.grid().description()
-            << ", " << with_commas(spec.cell_count()) << " cells of " << spec.channels.size()
+  std::cout << options.out << ": " << target.format->name << ' ' << spec.description() << ", "
+            << with_commas(spec.cell_count()) << " cells of " << spec.channels.size()
             << " channels, " << with_commas(bytes) << " bytes, from " << options.in << '\n';
   for (const std::string& what : lost) std::cout << "  lost: " << what << '\n';
   if (error) {
@@ -176,7 +177,7 @@ void convert(const ConvertOptions& options) {
     table = std::move(resampled);
   }
   bar.progress().begin(options.out, table.spec().cell_count(), "cells");
-  target.format->write(table, file, target.write);
+  write_table(*target.format, table, file, target.write);
   const std::uint64_t bytes = file.size();
   file.commit();
   bar.clear();

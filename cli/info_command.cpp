@@ -56,7 +56,7 @@ ChannelSummary summarise(const Table& table, std::size_t channel) {
 Json table_info(const std::string& file, const Format& format, const Table& table) {
   const TableSpec& spec = table.spec();
   Json info = {{"file", file}, {"format", format.name}, {"value", "f_r, 1/sr, without the cosine"}};
-  info["grid"] = spec.grid().description();
+  info["grid"] = spec.description();
   info["axes"] = Json::array();
   for (const Axis& axis : spec.grid().axes) {
     info["axes"].push_back({{"name", axis.name},

@@ -35,6 +35,7 @@ struct TabulateOptions {
   bool half = false;
   bool compress = false;
   bool components = false;
+  bool isotropic = false;
   bool dry_run = false;
   bool json = false;
 };
@@ -46,10 +47,11 @@ struct Output {
   std::string note;  // what this file cannot hold of the material
 };
 
-std::string what_is_lost(const Material& material, const Grid& grid) {
+std::string what_is_lost(const Material& material, const TableSpec& spec) {
   std::string note;
-  if (grid.kind == GridKind::kHalfDifference3d) note = "isotropic: the mean over phi_h";
-  const bool folded = grid.kind != GridKind::kInOut && grid.axes.back().highest_deg <= 180;
+  if (spec.isotropic()) note = "isotropic: the mean over phi_h";
+  const bool folded = spec.has_grid() && spec.grid().kind != GridKind::kInOut &&
+                      spec.grid().axes.back().highest_deg <= 180;
   if (material.reflectance == Reflectance::kPaper && folded) {
     note += (note.empty() ? "" : "; ") +
             std::string("not reciprocal: the mean of both orders of the directions");
@@ -57,27 +59,36 @@ std::string what_is_lost(const Material& material, const Grid& grid) {
   return note;
 }
 
+WriteOptions write_options(const TabulateOptions& options, Workers workers = {}) {
+  return {.half = options.half, .compress = options.compress, .workers = workers};
+}
+
 Output plan_output(const TabulateOptions& options, const Material& material,
                    const std::string& name) {
   const Format& format = format_for(name);
-  Grid grid = format.default_grid(material.reflectance);
-  if (options.grid) grid = parse_grid(*options.grid, grid.axes.back().highest_deg);
+  Samples samples = format.default_samples(material.reflectance, options.isotropic);
+  if (options.grid) {
+    const bool once_around =
+        material.reflectance == Reflectance::kPaper && format.keeps_description;
+    samples = parse_grid(*options.grid, once_around ? 360 : 180);
+  }
   const Effects effects = options.effects ? parse_effects(*options.effects) : Effects{};
   TableSpec spec =
-      material_spec(material, effects, grid, parse_cells(options.cells), options.components);
-  format.check(spec, {options.half, options.compress}, name);
+      material_spec(material, effects, samples, parse_cells(options.cells), options.components);
+  check_output(format, spec, write_options(options), name);
   check_producible(spec);
-  return {name, &format, std::move(spec), what_is_lost(material, grid)};
+  const std::string note = what_is_lost(material, spec);
+  return {name, &format, std::move(spec), note};
 }
 
 void report(const TabulateOptions& options, const Output& output, std::uint64_t bytes,
             double seconds) {
-  const Grid& grid = output.spec.grid();
+  const Layout layout = output.format->layout(output.spec, write_options(options));
   if (options.json) {
     Json line = {{"file", output.path.string()},
                  {"format", output.format->name},
-                 {"grid", grid.description()},
-                 {"cells", grid.cell_count()},
+                 {"grid", layout.description},
+                 {"cells", layout.cells},
                  {"channels", output.spec.channels.size()}};
     if (!options.dry_run) line.update({{"bytes", bytes}, {"seconds", seconds}});
     if (!output.note.empty()) line["note"] = output.note;
@@ -85,9 +96,8 @@ void report(const TabulateOptions& options, const Output& output, std::uint64_t 
     return;
   }
   std::ostringstream text;
-  text << output.path.string() << ": " << output.format->name << ' ' << grid.description() << ", "
-       << with_commas(grid.cell_count()) << " cells of " << output.spec.channels.size()
-       << " channels";
+  text << output.path.string() << ": " << output.format->name << ' ' << layout.description << ", "
+       << with_commas(layout.cells) << " cells of " << output.spec.channels.size() << " channels";
   if (options.dry_run) {
     text << ", not written (dry run)";
   } else {
@@ -99,13 +109,13 @@ void report(const TabulateOptions& options, const Output& output, std::uint64_t 
 
 void write(const TabulateOptions& options, const Output& output, AtomicFile& file,
            Workers workers) {
-  workers.progress->begin(output.path.filename().string(), output.spec.grid().cell_count(),
-                          "cells");
-  const WriteOptions write_options{options.half, options.compress, workers};
-  const bool single = output.format->precision(write_options).relative >= 0x1p-24;
+  const WriteOptions with_workers = write_options(options, workers);
+  workers.progress->begin(output.path.filename().string(),
+                          output.format->layout(output.spec, with_workers).cells, "cells");
+  const bool single = output.format->precision(with_workers).relative >= 0x1p-24;
   const std::unique_ptr<Producer> producer =
       make_producer(output.spec, workers, single ? Precision::kSingle : Precision::kDouble);
-  output.format->write(*producer, file, write_options);
+  write_table(*output.format, *producer, file, with_workers);
   workers.check();
   file.commit();
 }
@@ -187,6 +197,8 @@ void add_tabulate_command(CLI::App& program) {
                   "only these components, joined by ',': specular, internal, diffuse");
   command->add_flag("--components", options->components,
                     "also layers specular.*, internal.*, diffuse.* (EXR)");
+  command->add_flag("--isotropic", options->isotropic,
+                    "the mean over rotations of the cloth: smaller files, and no weave");
   command->add_flag("--half", options->half,
                     "16-bit floats (EXR); a value that does not fit is an error");
   command->add_flag("--compress", options->compress, "compress without loss (EXR)");

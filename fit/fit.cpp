@@ -81,8 +81,7 @@ class TableFit {
  private:
   void describe_table() {
     const TableSpec& spec = table_.spec();
-    report_.grid = spec.has_grid() ? spec.grid().description()
-                                   : std::to_string(spec.pairs().size()) + " pairs";
+    report_.grid = spec.description();
     report_.cell_averages = spec.cells.average;
     report_.weighting = weighting_text(options_.weighting);
     report_.loss = loss_text(options_.loss);

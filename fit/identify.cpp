@@ -64,8 +64,7 @@ class Identifier {
   IdentifyReport run() {
     const auto started = std::chrono::steady_clock::now();
     report_.material = material_;
-    report_.grid = spec_.has_grid() ? spec_.grid().description()
-                                    : std::to_string(spec_.pairs().size()) + " pairs";
+    report_.grid = spec_.description();
     report_.cell_averages = spec_.cells.average;
     report_.noise = noise_;
     rows_ = make_rows(observations_, values(0, 0), row_weights(), &model_, true, workers_);

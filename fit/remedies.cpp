@@ -49,9 +49,7 @@ Material without_effects(const TableSpec& spec, const Material& material, FitOpt
   return apply_effects(material, effects);
 }
 
-bool has_phi_h(const TableSpec& spec) {
-  return !spec.has_grid() || spec.grid().kind != GridKind::kHalfDifference3d;
-}
+bool has_phi_h(const TableSpec& spec) { return !spec.isotropic(); }
 
 bool lies_at_bound(const ParameterSet& set, std::size_t parameter, const Material& material) {
   const FitParameter& p = set.parameters()[parameter];

@@ -29,6 +29,7 @@ namespace clothbrdf {
 namespace {
 
 constexpr const char* kAttribute = "clothbrdf";
+constexpr std::string_view kOptions[] = {"--half", "--compress"};
 
 // A file that remembers how far it was read: nothing may follow a table's last line.
 class CountingIStream final : public Imf::IStream {
@@ -140,8 +141,9 @@ void write_lines(const Producer& producer, Imf::OutputFile& out, Imf::PixelType 
   stream_rows(producer, workers, write, check);
 }
 
-Grid exr_grid(Reflectance reflectance) {
-  return parse_grid("halfdiff4d", reflectance == Reflectance::kPaper ? 360 : 180);
+Samples exr_samples(Reflectance reflectance, bool isotropic) {
+  return parse_grid(isotropic ? "halfdiff3d" : "halfdiff4d",
+                    reflectance == Reflectance::kPaper ? 360 : 180);
 }
 
 StoredPrecision exr_precision(const WriteOptions& options) {
@@ -150,7 +152,10 @@ StoredPrecision exr_precision(const WriteOptions& options) {
 
 void check_exr(const TableSpec& spec, const WriteOptions& /*all are allowed*/,
                const std::string& name) {
-  if (!spec.has_grid()) throw InputError(name + ": EXR holds grids, not lists of pairs");
+  if (!spec.has_grid()) {
+    throw InputError(name + ": EXR holds grids, not " + spec.description() +
+                     "; give --grid to resample");
+  }
   const PictureSize size = picture_size(spec);
   // OpenEXR counts pixels and bytes of a line in 32-bit integers.
   constexpr std::size_t kMostBytes = std::numeric_limits<int>::max();
@@ -166,7 +171,6 @@ void check_exr(const TableSpec& spec, const WriteOptions& /*all are allowed*/,
 void write_exr(const Producer& producer, AtomicFile& file, const WriteOptions& options) {
   const TableSpec& spec = producer.spec();
   const std::string name = file.name().string();
-  check_exr(spec, options, name);
   const PictureSize size = picture_size(spec);
   try {
     Imf::Header header(static_cast<int>(size.width), static_cast<int>(size.height));
@@ -271,10 +275,13 @@ Format exr_format() {
   return {.name = "EXR",
           .ending = ".exr",
           .summary = "any grid as a picture of floats, with a description that rebuilds the table",
-          .default_grid = exr_grid,
+          .options = kOptions,
+          .default_samples = exr_samples,
+          .colours = [](const WriteOptions&) { return Colours::kAny; },
           .keeps_description = true,
           .precision = exr_precision,
           .check = check_exr,
+          .layout = own_samples,
           .write = write_exr,
           .read = read_exr};
 }

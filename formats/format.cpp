@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cerrno>
 #include <cstring>
+#include <iterator>
 #include <string>
 
 #include "formats/exr.h"
@@ -13,10 +14,64 @@
 #include "support/errors.h"
 
 namespace clothbrdf {
+namespace {
+
+void check_colours(const Format& format, const TableSpec& spec, const WriteOptions& options,
+                   const std::string& name) {
+  const Colours wanted = format.colours(options);
+  if (wanted == Colours::kAny) return;
+  const auto fits = [&](const Channel& channel, std::size_t index) {
+    constexpr std::string_view kRgb[] = {"R", "G", "B"};
+    if (channel.part != Part::kTotal) return false;
+    if (wanted == Colours::kSpectrum) return named_wavelength(channel.name).has_value();
+    return index < std::size(kRgb) && channel.name == kRgb[index];
+  };
+  bool all = wanted == Colours::kSpectrum || spec.channels.size() == 3;
+  for (std::size_t c = 0; c < spec.channels.size(); ++c) all = all && fits(spec.channels[c], c);
+  if (all) return;
+  throw InputError(
+      name + ": " + std::to_string(spec.channels.size()) + " channels (" +
+      full_name(spec.channels.front()) + " ... " + full_name(spec.channels.back()) +
+      ") are not allowed: " + std::string(format.name) +
+      (wanted == Colours::kRgb ? " holds R, G and B only" : " holds wavelengths only"));
+}
+
+}  // namespace
 
 std::span<const Format> formats() {
   static const Format kFormats[] = {merl_format(), exr_format()};
   return kFormats;
+}
+
+std::vector<std::string_view> WriteOptions::given() const {
+  std::vector<std::string_view> names;
+  if (half) names.emplace_back("--half");
+  if (compress) names.emplace_back("--compress");
+  if (flavour) names.emplace_back("--flavour");
+  if (bytes) names.emplace_back("--size");
+  return names;
+}
+
+void check_output(const Format& format, const TableSpec& spec, const WriteOptions& options,
+                  const std::string& name) {
+  for (const std::string_view option : options.given()) {
+    if (std::find(format.options.begin(), format.options.end(), option) == format.options.end()) {
+      throw InputError(name + ": " + std::string(option) + " is not for " +
+                       std::string(format.name) + " files");
+    }
+  }
+  check_colours(format, spec, options, name);
+  format.check(spec, options, name);
+}
+
+void write_table(const Format& format, const Producer& producer, AtomicFile& file,
+                 const WriteOptions& options) {
+  check_output(format, producer.spec(), options, file.name().string());
+  format.write(producer, file, options);
+}
+
+Layout own_samples(const TableSpec& spec, const WriteOptions& /*options*/) {
+  return {spec.description(), spec.cell_count()};
 }
 
 void require_readable(const std::filesystem::path& path) {
@@ -32,13 +87,15 @@ void require_readable(const std::filesystem::path& path) {
 }
 
 const Format* find_format(const std::filesystem::path& path) {
-  std::string ending = path.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
+  std::string file = path.filename().string();
+  std::transform(file.begin(), file.end(), file.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const Format* found = nullptr;
   for (const Format& format : formats()) {
-    if (format.ending == ending) return &format;
+    if (file.size() <= format.ending.size() || !file.ends_with(format.ending)) continue;
+    if (found == nullptr || format.ending.size() > found->ending.size()) found = &format;
   }
-  return nullptr;
+  return found;
 }
 
 const Format& format_for(const std::filesystem::path& path) {

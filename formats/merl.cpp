@@ -24,34 +24,18 @@ constexpr std::uint64_t kFileBytes = kHeaderBytes + 3 * kCells * sizeof(double);
 // Stored value = f_r * kStored.
 constexpr std::array<double, 3> kStored = {1500.0, 1500.0 / 1.15, 1500.0 / 1.66};
 
-const std::vector<Channel>& rgb_channels() {
-  static const std::vector<Channel> kChannels = {
-      {"R", Part::kTotal, 0}, {"G", Part::kTotal, 1}, {"B", Part::kTotal, 2}};
-  return kChannels;
-}
+// Both conventions are folded to 180 degrees.
+Samples merl_samples(Reflectance /*either*/, bool /*always isotropic*/) { return halfdiff3d(); }
 
-Grid merl_grid(Reflectance /*both are folded to 180 degrees*/) { return halfdiff3d(); }
-
-void check_merl(const TableSpec& spec, const WriteOptions& options, const std::string& name) {
-  const std::string grid = spec.has_grid() ? spec.grid().description() : "a list of pairs";
+void check_merl(const TableSpec& spec, const WriteOptions& /*none*/, const std::string& name) {
   if (!spec.has_grid() || spec.grid() != halfdiff3d()) {
-    throw InputError(name + ": the grid " + grid + " is not allowed: MERL holds " +
+    throw InputError(name + ": the grid " + spec.description() + " is not allowed: MERL holds " +
                      halfdiff3d().description() + " only");
-  }
-  if (spec.channels != rgb_channels()) {
-    throw InputError(name + ": " + std::to_string(spec.channels.size()) + " channels (" +
-                     full_name(spec.channels.front()) + " ... " + full_name(spec.channels.back()) +
-                     ") are not allowed: MERL holds R, G and B only");
-  }
-  if (options.half || options.compress) {
-    throw InputError(name + ": --" + (options.half ? "half" : "compress") +
-                     " is not allowed: MERL holds plain doubles only");
   }
 }
 
 void write_merl(const Producer& producer, AtomicFile& file, const WriteOptions& options) {
   const TableSpec& spec = producer.spec();
-  check_merl(spec, options, file.name().string());
   file.reserve(kFileBytes);
   file.write_at(0, std::as_bytes(std::span(kSizes)));
   const std::size_t columns = spec.column_count();
@@ -127,10 +111,13 @@ Format merl_format() {
   return {.name = "MERL",
           .ending = ".binary",
           .summary = "isotropic 90x90x180 table of doubles; the mean over phi_h",
-          .default_grid = merl_grid,
+          .options = {},
+          .default_samples = merl_samples,
+          .colours = [](const WriteOptions&) { return Colours::kRgb; },
           .keeps_description = false,
           .precision = [](const WriteOptions&) { return StoredPrecision{}; },
           .check = check_merl,
+          .layout = own_samples,
           .write = write_merl,
           .read = read_merl};
 }

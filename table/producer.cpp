@@ -1,5 +1,7 @@
 #include "table/producer.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 #include <tbb/parallel_pipeline.h>
 
 #include <algorithm>
@@ -22,6 +24,20 @@ struct Block {
 };
 
 }  // namespace
+
+void fill_all_pairs(const Producer& producer, Workers workers, std::span<const Directions> pairs,
+                    std::span<double> values) {
+  constexpr std::size_t kPairsOfBlock = 4096;
+  const std::size_t channels = producer.spec().channels.size();
+  const auto fill = [&](const tbb::blocked_range<std::size_t>& range) {
+    workers.check();
+    producer.fill_pairs(pairs.subspan(range.begin(), range.size()),
+                        values.subspan(range.begin() * channels, range.size() * channels));
+  };
+  with_threads(workers.threads, [&] {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pairs.size(), kPairsOfBlock), fill);
+  });
+}
 
 void stream_rows(const Producer& producer, Workers workers, const RowFunction& take,
                  const RowFunction& prepare) {

@@ -21,9 +21,14 @@ class Producer {
   /// bits however rows are grouped.
   virtual void fill_rows(std::size_t first_row, std::span<double> values) const = 0;
 
-  /// Values at any pairs of directions: values[pair][channel]; 0 on or below the horizon.
-  virtual void fill_pairs(std::span<const DirectionPair> pairs, std::span<double> values) const = 0;
+  /// Values at any pairs of unit vectors: values[pair][channel]; 0 on or below the horizon. Of an
+  /// isotropic spec the means over rotations of the cloth.
+  virtual void fill_pairs(std::span<const Directions> pairs, std::span<double> values) const = 0;
 };
+
+/// The same for many pairs, shared out to the workers. Throws Cancelled.
+void fill_all_pairs(const Producer& producer, Workers workers, std::span<const Directions> pairs,
+                    std::span<double> values);
 
 /// Is given whole rows, values[row][channel][column], and may change them.
 using RowFunction = std::function<void(std::size_t first_row, std::span<double> values)>;

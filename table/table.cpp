@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "table/nearest_sample.h"
+
 namespace clothbrdf {
 namespace {
 
@@ -17,15 +19,19 @@ constexpr double kAngleRounding = 1e-9;
 }  // namespace
 
 Table::Table(TableSpec spec, std::vector<double> values, std::vector<std::uint8_t> valid,
-             StoredPrecision precision)
+             StoredPrecision precision, std::shared_ptr<const Interpolant> interpolant)
     : spec_(std::move(spec)),
       values_(std::move(values)),
       valid_(std::move(valid)),
-      precision_(precision) {
+      precision_(precision),
+      interpolant_(std::move(interpolant)) {
   if (values_.size() != spec_.cell_count() * spec_.channels.size() ||
       valid_.size() != spec_.cell_count()) {
     throw std::invalid_argument(
         "table: the numbers of values and cells do not match its axes and channels");
+  }
+  if (spec_.has_pairs() && !interpolant_) {
+    interpolant_ = std::make_shared<NearestSample>(spec_, values_, valid_);
   }
 }
 
@@ -34,25 +40,21 @@ void Table::fill_rows(std::size_t first_row, std::span<double> values) const {
   std::copy_n(from, values.size(), values.begin());
 }
 
-void Table::fill_pairs(std::span<const DirectionPair> pairs, std::span<double> values) const {
+void Table::fill_pairs(std::span<const Directions> pairs, std::span<double> values) const {
   const std::size_t channels = spec_.channels.size();
   for (std::size_t p = 0; p < pairs.size(); ++p) {
-    const DirectionPair& pair = pairs[p];
-    const std::span<double> to = values.subspan(p * channels, channels);
-    if (spec_.has_grid()) {
-      interpolate({direction(pair.theta_i, pair.phi_i), direction(pair.theta_o, pair.phi_o)}, to);
-      continue;
-    }
-    const auto found = std::find(spec_.pairs().begin(), spec_.pairs().end(), pair);
-    const bool known = found != spec_.pairs().end();
-    const auto cell = static_cast<std::size_t>(found - spec_.pairs().begin());
-    for (std::size_t c = 0; c < channels; ++c) to[c] = known ? value(cell, c) : 0.0;
+    interpolate(pairs[p], values.subspan(p * channels, channels));
   }
+}
+
+std::string Table::interpolation() const {
+  return interpolant_ ? interpolant_->rule() : "linear between nodes";
 }
 
 bool Table::interpolate(const Directions& directions, std::span<double> values) const {
   std::fill(values.begin(), values.end(), 0.0);
   if (!directions.above_horizon()) return false;
+  if (interpolant_) return interpolant_->interpolate(directions, values);
   const std::vector<Axis>& axes = spec_.grid().axes;
   std::array<double, 4> angle = spec_.grid().angles(directions.wi, directions.wo);
   // One azimuth of the light stands for any: the eye's is seen from it.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -16,26 +17,44 @@ struct StoredPrecision {
   bool operator==(const StoredPrecision&) const = default;
 };
 
+/// How f_r is found between the samples of a table: a rule of its format, as its readers follow it.
+/// May be called from several threads at once.
+class Interpolant {
+ public:
+  virtual ~Interpolant() = default;
+
+  /// f_r of each channel at a pair of unit vectors above the horizon. False, and values of 0, where
+  /// the table says nothing.
+  virtual bool interpolate(const Directions& directions, std::span<double> values) const = 0;
+
+  /// For people: "linear between nodes".
+  virtual std::string rule() const = 0;
+};
+
 /// A table in memory, immutable. Values are f_r in 1/sr, without the cosine.
 class Table final : public Producer {
  public:
   /// values[row][channel][column]; valid[cell] is 0 where a cell holds no measurement or lies below
-  /// the horizon. Throws std::invalid_argument where the sizes do not match the spec.
+  /// the horizon. Grids need no interpolant of their own; of pairs without one the nearest sample
+  /// counts (NearestSample). Throws std::invalid_argument where the sizes do not match the spec.
   Table(TableSpec spec, std::vector<double> values, std::vector<std::uint8_t> valid,
-        StoredPrecision precision = {});
+        StoredPrecision precision = {}, std::shared_ptr<const Interpolant> interpolant = {});
 
   const TableSpec& spec() const override { return spec_; }
   void fill_rows(std::size_t first_row, std::span<double> values) const override;
-  /// Interpolated; for a list of pairs, the value of the pair that is asked for, 0 where it is not
-  /// in the list.
-  void fill_pairs(std::span<const DirectionPair> pairs, std::span<double> values) const override;
+  void fill_pairs(std::span<const Directions> pairs, std::span<double> values) const override;
 
-  /// f_r of each channel between the nodes of a grid: linear in each axis's own coordinate.
+  /// How interpolate() works, for people.
+  std::string interpolation() const;
+
+  /// f_r of each channel between the samples, by the table's interpolant. Without one, between the
+  /// nodes of a grid: linear in each axis's own coordinate.
   /// Periodic axes wrap, the others are continued as constants beyond their first and last node.
   /// An only phi_i stands for any, with phi_o counted from it.
   /// Cells that are not valid or not finite are left out, and the weights of the others scaled up.
   /// False, and values of 0, on or below the horizon and where all cells around are left out.
   bool interpolate(const Directions& directions, std::span<double> values) const;
+  std::shared_ptr<const Interpolant> interpolant() const { return interpolant_; }
 
   double value(std::size_t cell, std::size_t channel) const;
   bool valid(std::size_t cell) const { return valid_[cell] != 0; }
@@ -49,6 +68,7 @@ class Table final : public Producer {
   std::vector<double> values_;
   std::vector<std::uint8_t> valid_;
   StoredPrecision precision_;
+  std::shared_ptr<const Interpolant> interpolant_;
 };
 
 /// Which cells of a table made from a material hold a value: those above the horizon (all, for a

@@ -31,6 +31,47 @@ std::vector<Channel> material_channels(const Material& material, bool with_compo
   return channels;
 }
 
+const std::vector<Channel>& rgb_channels() {
+  static const std::vector<Channel> kChannels = {
+      {"R", Part::kTotal, 0}, {"G", Part::kTotal, 1}, {"B", Part::kTotal, 2}};
+  return kChannels;
+}
+
+bool TableSpec::isotropic() const {
+  if (has_pairs()) return std::get<PairList>(samples).isotropic;
+  if (!has_grid()) return std::get<AnyPairs>(samples).isotropic;
+  return grid().kind == GridKind::kHalfDifference3d ||
+         (grid().kind == GridKind::kInOut && grid().axes[1].size == 1);
+}
+
+std::size_t TableSpec::row_count() const {
+  if (has_grid()) return grid().row_count();
+  return has_pairs() ? pairs().size() : 0;
+}
+
+Directions TableSpec::directions(std::size_t cell) const {
+  if (has_grid()) return grid().directions(cell);
+  const DirectionPair& pair = pairs()[cell];
+  return {direction(pair.theta_i, pair.phi_i), direction(pair.theta_o, pair.phi_o)};
+}
+
+bool TableSpec::node_above_horizon(std::size_t cell) const {
+  return has_grid() ? grid().node_above_horizon(cell) : directions(cell).above_horizon();
+}
+
+std::string TableSpec::place(std::size_t cell) const {
+  if (has_grid()) return grid().place(cell);
+  const DirectionPair& pair = pairs()[cell];
+  return "theta_i " + number_text(pair.theta_i) + " phi_i " + number_text(pair.phi_i) +
+         " theta_o " + number_text(pair.theta_o) + " phi_o " + number_text(pair.phi_o);
+}
+
+std::string TableSpec::description() const {
+  if (has_grid()) return grid().description();
+  const std::string what = has_pairs() ? std::to_string(pairs().size()) + " pairs" : "any pairs";
+  return what + (isotropic() ? ", isotropic" : "");
+}
+
 std::optional<double> named_wavelength(const std::string& channel_name) {
   std::string text = channel_name;
   std::replace(text.begin(), text.end(), '_', '.');

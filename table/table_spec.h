@@ -45,22 +45,53 @@ struct Provenance {
   bool operator==(const Provenance&) const = default;
 };
 
+/// Samples that lie on no grid: a cell, and a row, for each pair.
+struct PairList {
+  std::vector<DirectionPair> pairs;
+  bool isotropic = false;  ///< values are means over rotations of the cloth
+
+  bool operator==(const PairList&) const = default;
+};
+
+/// No samples of its own: what a format with nodes of its own is written from. Such a spec has no
+/// cells, and its producer answers pairs.
+struct AnyPairs {
+  bool isotropic = false;  ///< values are means over rotations of the cloth
+
+  bool operator==(const AnyPairs&) const = default;
+};
+
+using Samples = std::variant<Grid, PairList, AnyPairs>;
+
 /// All of a table but its values. Values are f_r in 1/sr, without the cosine.
 struct TableSpec {
-  std::variant<Grid, std::vector<DirectionPair>> samples;
+  Samples samples;
   std::vector<Channel> channels;
   CellRule cells;
   Provenance provenance;
 
   bool has_grid() const { return std::holds_alternative<Grid>(samples); }
+  bool has_pairs() const { return std::holds_alternative<PairList>(samples); }
   const Grid& grid() const { return std::get<Grid>(samples); }
-  const std::vector<DirectionPair>& pairs() const {
-    return std::get<std::vector<DirectionPair>>(samples);
-  }
+  const std::vector<DirectionPair>& pairs() const { return std::get<PairList>(samples).pairs; }
 
-  std::size_t row_count() const { return has_grid() ? grid().row_count() : pairs().size(); }
+  /// Whether values are means over rotations of the cloth: no azimuth of a direction by itself
+  /// counts.
+  bool isotropic() const;
+
+  std::size_t row_count() const;
   std::size_t column_count() const { return has_grid() ? grid().column_count() : 1; }
   std::size_t cell_count() const { return row_count() * column_count(); }
+
+  /// Light and eye at a cell's node.
+  Directions directions(std::size_t cell) const;
+  /// Whether these are above the horizon.
+  bool node_above_horizon(std::size_t cell) const;
+  /// Where a cell's node is, for messages: "theta_h 0.25 theta_d 1 phi_d 90", in degrees.
+  std::string place(std::size_t cell) const;
+  /// "halfdiff3d:90x90x180", "8,192 pairs, isotropic".
+  std::string description() const;
+
   /// Values of a row: column_count for each channel.
   std::size_t row_values() const { return column_count() * channels.size(); }
 
@@ -70,6 +101,9 @@ struct TableSpec {
 /// The channels of a material's table: its totals and, where asked, the three components after
 /// them.
 std::vector<Channel> material_channels(const Material& material, bool with_components);
+
+/// R, G and B, totals only.
+const std::vector<Channel>& rgb_channels();
 
 /// The wavelength that a channel is named after, nm; none for other names.
 std::optional<double> named_wavelength(const std::string& channel_name);

@@ -4,6 +4,11 @@
 
 namespace clothbrdf {
 
+bool floats_do(const ClothModel<double>& model) {
+  constexpr double kNarrow = 0.01;
+  return narrowest_axis(model) >= kNarrow;
+}
+
 double narrowest_axis(const ClothModel<double>& model) {
   double narrowest = 1;
   for (const PreparedYarn<double>& y : model.yarns()) {

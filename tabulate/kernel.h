@@ -11,8 +11,8 @@ namespace clothbrdf {
 /// How exactly a kernel works.
 enum class Precision {
   kDouble,  ///< as the model, to rounding
-  kSingle,  ///< for files of 32-bit floats: in/out points are evaluated in floats (batch.h), unless
-            ///< lobes are so narrow that these would not do
+  kSingle,  ///< for files of 32-bit floats: in/out points and pairs are evaluated in floats
+            ///< (batch.h), unless lobes are too narrow (floats_do)
 };
 
 /// Values of whole rows of one kind of grid: the grid's part of a Producer.
@@ -24,6 +24,10 @@ class Kernel {
 
 /// The narrowest lobe axis of both yarns.
 double narrowest_axis(const ClothModel<double>& model);
+
+/// Whether floats are good enough for a file of floats: narrow lobes magnify the rounding of
+/// directions beyond that.
+bool floats_do(const ClothModel<double>& model);
 
 /// The value of a channel.
 double channel_value(const Components& f, const Channel& channel);

@@ -1,5 +1,6 @@
 #include "tabulate/model_producer.h"
 
+#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -10,23 +11,22 @@
 #include "tabulate/halfdiff_points.h"
 #include "tabulate/inout_average.h"
 #include "tabulate/inout_points.h"
+#include "tabulate/pair_evaluator.h"
 
 namespace clothbrdf {
 namespace {
-
-// Below, lobes magnify the rounding of directions in floats beyond the accuracy of a file.
-constexpr double kNarrow = 0.01;
 
 class ModelProducer final : public Producer {
  public:
   ModelProducer(const TableSpec& spec, Workers workers, Precision precision)
       : spec_(spec), model_(*spec.provenance.material, spec.provenance.effects) {
-    if (!spec_.has_grid()) return;
-    if (spec_.grid().kind == GridKind::kInOut) {
+    if (!spec_.has_grid()) {
+      pairs_ = std::make_unique<PairEvaluator>(spec_, model_, precision, workers);
+    } else if (spec_.grid().kind == GridKind::kInOut) {
       if (spec_.cells.average) {
         kernel_ = std::make_unique<InOutAverage>(spec_, model_, workers);
       } else {
-        const bool single = precision == Precision::kSingle && narrowest_axis(model_) >= kNarrow;
+        const bool single = precision == Precision::kSingle && floats_do(model_);
         kernel_ = std::make_unique<InOutPoints>(
             spec_, model_, single ? Precision::kSingle : Precision::kDouble, workers);
       }
@@ -42,31 +42,34 @@ class ModelProducer final : public Producer {
   void fill_rows(std::size_t first_row, std::span<double> values) const override {
     if (kernel_) {
       kernel_->fill_rows(first_row, values);
-    } else {
-      fill_pairs(std::span(spec_.pairs()).subspan(first_row, values.size() / spec_.row_values()),
-                 values);
+      return;
     }
+    const std::size_t rows = values.size() / spec_.row_values();
+    std::vector<Directions> pairs;
+    pairs.reserve(rows);
+    for (std::size_t row = first_row; row < first_row + rows; ++row) {
+      pairs.push_back(spec_.directions(row));
+    }
+    pairs_->fill(pairs, values);
   }
 
-  void fill_pairs(std::span<const DirectionPair> pairs, std::span<double> values) const override {
-    std::size_t next = 0;
-    for (const DirectionPair& pair : pairs) {
-      const Components f = model_.evaluate(pair_geometry(pair, model_.material().rotation_deg));
-      for (const Channel& channel : spec_.channels) values[next++] = channel_value(f, channel);
-    }
+  void fill_pairs(std::span<const Directions> pairs, std::span<double> values) const override {
+    if (!pairs_) throw std::logic_error("what was prepared for a grid answers rows only");
+    pairs_->fill(pairs, values);
   }
 
  private:
   TableSpec spec_;
   ClothModel<double> model_;
-  std::unique_ptr<Kernel> kernel_;
+  std::unique_ptr<Kernel> kernel_;        // of grids
+  std::unique_ptr<PairEvaluator> pairs_;  // of all other samples
 };
 
 }  // namespace
 
-TableSpec material_spec(const Material& material, const Effects& effects, const Grid& grid,
+TableSpec material_spec(const Material& material, const Effects& effects, const Samples& samples,
                         const CellRule& cells, bool with_components) {
-  return {grid,
+  return {samples,
           material_channels(material, with_components),
           cells,
           {material, effects, std::string("clothbrdf ") + kVersion}};

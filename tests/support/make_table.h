@@ -19,7 +19,7 @@ inline Table preset_table(const std::string& name, const Grid& grid, bool with_c
 inline void write_table(const Producer& producer, const std::filesystem::path& path,
                         const WriteOptions& options = {}) {
   AtomicFile file(path);
-  format_for(path).write(producer, file, options);
+  clothbrdf::write_table(format_for(path), producer, file, options);
   file.commit();
 }
 

@@ -182,7 +182,7 @@ TEST_CASE("tables without channels R, G and B or without a grid are refused in o
             {{"R", Part::kDiffuse, 0}, {"G", Part::kDiffuse, 1}, {"B", Part::kDiffuse, 2}})) ==
         needs);
   TableSpec pairs;
-  pairs.samples = std::vector<DirectionPair>{{0, 0, 0, 0}};
+  pairs.samples = PairList{{{0, 0, 0, 0}}};
   pairs.channels = {{"R", Part::kTotal, 0}, {"G", Part::kTotal, 1}, {"B", Part::kTotal, 2}};
   CHECK(why(Table(pairs, {1, 2, 3}, {1})) == "t: is a list of pairs; a picture needs a grid");
 }

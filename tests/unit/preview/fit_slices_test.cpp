@@ -193,7 +193,7 @@ TEST_CASE("degenerate tables give a picture of the stated size") {
 
 TEST_CASE("a list of pairs is refused, it has no slices") {
   TableSpec spec;
-  spec.samples = std::vector<DirectionPair>{{0, 0, 0, 0}};
+  spec.samples = PairList{{{0, 0, 0, 0}}};
   spec.channels = {{"R", Part::kTotal, 0}, {"G", Part::kTotal, 1}, {"B", Part::kTotal, 2}};
   CHECK_THROWS_AS(fit_slices(Table(spec, {1, 2, 3}, {1}), silk(), 1), InputError);
 }

@@ -32,7 +32,7 @@ class CancelsAtRow final : public Producer {
     if (first_row == row_) progress_.cancel();
     table_.fill_rows(first_row, values);
   }
-  void fill_pairs(std::span<const DirectionPair> pairs, std::span<double> values) const override {
+  void fill_pairs(std::span<const Directions> pairs, std::span<double> values) const override {
     table_.fill_pairs(pairs, values);
   }
 
@@ -123,7 +123,8 @@ TEST_CASE("cells without a measurement take no part in what lies between") {
 
 TEST_CASE("below the horizon a table is 0") {
   const Table table = counting_table(small_spec());
-  const std::vector<DirectionPair> pairs = {{30, 10, 20, 60}, {120, 0, 20, 0}};
+  const std::vector<Directions> pairs = {{direction(30.0, 10.0), direction(20.0, 60.0)},
+                                         {direction(120.0, 0.0), direction(20.0, 0.0)}};
   std::vector<double> values(4);
   table.fill_pairs(pairs, values);
   CHECK(values[0] > 0);
@@ -150,18 +151,49 @@ TEST_CASE("a table without its components keeps totals, mask and precision") {
 }
 
 TEST_CASE("a list of pairs is a table too") {
-  const TableSpec spec{std::vector<DirectionPair>{{30, 10, 20, 60}, {10, 0, 20, 0}},
-                       {{"R", Part::kTotal, 0}},
-                       {},
-                       {}};
+  const TableSpec spec{
+      PairList{{{30, 10, 20, 60}, {10, 0, 20, 0}}}, {{"R", Part::kTotal, 0}}, {}, {}};
   const Table table(spec, {0.5, 0.25}, {1, 1});
   CHECK(spec.row_count() == 2);
   CHECK(spec.row_values() == 1);
-  const std::vector<DirectionPair> asked = {{10, 0, 20, 0}, {11, 0, 20, 0}};
-  std::vector<double> values(2);
+  CHECK_FALSE(spec.isotropic());
+  CHECK(spec.description() == "2 pairs");
+  CHECK(spec.place(0) == "theta_i 30 phi_i 10 theta_o 20 phi_o 60");
+  // Of the second sample, near it, and of none.
+  const std::vector<Directions> asked = {{direction(10.0, 0.0), direction(20.0, 0.0)},
+                                         {direction(13.0, 0.0), direction(22.0, 0.0)},
+                                         {direction(19.0, 0.0), direction(30.0, 0.0)}};
+  std::vector<double> values(3);
   table.fill_pairs(asked, values);
-  CHECK(values[0] == 0.25);
-  CHECK(values[1] == 0);
+  CHECK(values == std::vector<double>{0.25, 0.25, 0});
+}
+
+TEST_CASE("isotropic samples stand for all rotations and for mirror images") {
+  const TableSpec spec{
+      PairList{{{30, 0, 20, 60}, {30, 0, 20, 120}}, true}, {{"R", Part::kTotal, 0}}, {}, {}};
+  const Table table(spec, {0.5, 0.25}, {1, 1});
+  double value = 0;
+  for (const auto& [phi_i, phi_o, expected] :
+       {std::array{77.0, 137.0, 0.5}, std::array{77.0, 17.0, 0.5}, std::array{77.0, -43.0, 0.25}}) {
+    INFO(phi_i << ' ' << phi_o);
+    REQUIRE(
+        table.interpolate({direction(30.0, phi_i), direction(20.0, phi_o)}, std::span(&value, 1)));
+    CHECK(value == expected);
+  }
+}
+
+TEST_CASE("of scattered samples the invalid ones do not count") {
+  const TableSpec spec{
+      PairList{{{30, 0, 20, 60}, {31, 0, 20, 60}}}, {{"R", Part::kTotal, 0}}, {}, {}};
+  double value = 0;
+  const Directions asked = {direction(30.0, 0.0), direction(20.0, 60.0)};
+  REQUIRE(Table(spec, {0.5, 0.25}, {0, 1}).interpolate(asked, std::span(&value, 1)));
+  CHECK(value == 0.25);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  REQUIRE(Table(spec, {0.5, nan}, {1, 1}).interpolate(asked, std::span(&value, 1)));
+  CHECK(value == 0.5);
+  CHECK_FALSE(Table(spec, {0.5, nan}, {0, 1}).interpolate(asked, std::span(&value, 1)));
+  CHECK(value == 0);
 }
 
 TEST_CASE("a table whose numbers do not match its axes is refused") {
