@@ -23,10 +23,9 @@ struct CompareOptions {
   bool json = false;
 };
 
-void print_text(const CompareOptions& options, const Table& a, const Comparison& comparison) {
-  const Grid& grid = a.spec().grid();
-  std::cout << options.b << " against " << options.a << ", at the nodes of " << grid.description()
-            << ": " << with_commas(comparison.cells) << " cells\n";
+void print_text(const CompareOptions& options, const Comparison& comparison) {
+  std::cout << options.b << " against " << options.a << ", at " << comparison.samples << ": "
+            << with_commas(comparison.cells) << " cells\n";
   if (comparison.only_a > 0) {
     std::cout << "  " << with_commas(comparison.only_a) << " more cells are in " << options.a
               << " only\n";
@@ -35,7 +34,7 @@ void print_text(const CompareOptions& options, const Table& a, const Comparison&
   for (const ChannelDifference& d : comparison.channels) {
     std::cout << "  " << std::left << std::setw(10) << d.channel << "  " << std::setw(9) << d.rms
               << "  " << std::setw(9) << d.p99 << "  " << std::setw(9) << d.max << "  " << d.a
-              << " and " << d.b << " at " << grid.place(d.worst_cell) << '\n';
+              << " and " << d.b << " at " << d.place << '\n';
   }
 }
 
@@ -43,19 +42,17 @@ void print_json(const CompareOptions& options, const Table& a, const Comparison&
   Json json = {{"a", options.a},
                {"b", options.b},
                {"grid", a.spec().description()},
+               {"samples", comparison.samples},
                {"cells", comparison.cells},
                {"only_a", comparison.only_a},
                {"channels", Json::array()}};
   for (const ChannelDifference& d : comparison.channels) {
-    json["channels"].push_back({{"name", d.channel},
-                                {"rms", d.rms},
-                                {"p99", d.p99},
-                                {"max", d.max},
-                                {"worst",
-                                 {{"cell", d.worst_cell},
-                                  {"place", a.spec().place(d.worst_cell)},
-                                  {"a", d.a},
-                                  {"b", d.b}}}});
+    json["channels"].push_back(
+        {{"name", d.channel},
+         {"rms", d.rms},
+         {"p99", d.p99},
+         {"max", d.max},
+         {"worst", {{"cell", d.worst_cell}, {"place", d.place}, {"a", d.a}, {"b", d.b}}}});
   }
   std::cout << json.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
 }
@@ -77,7 +74,7 @@ void compare_tables(const CompareOptions& options) {
   if (options.json) {
     print_json(options, a, comparison);
   } else {
-    print_text(options, a, comparison);
+    print_text(options, comparison);
   }
 }
 

@@ -151,12 +151,7 @@ void fit(const FitCommandOptions& options) {
 
 void add_fit_command(CLI::App& program) {
   const auto options = std::make_shared<FitCommandOptions>();
-  CLI::App* command = program.add_subcommand(
-      "fit",
-      "Finds the material of a table, layer counts included, with standard errors, and says what "
-      "the table cannot tell. Exits 1 where the fit does not converge; the report is written even "
-      "then.\n"
-      "Example: clothbrdf fit silk.exr -o report.json --material fitted.json --noise 0.01");
+  CLI::App* command = program.add_subcommand("fit", kFitSummary);
   command->add_option("TABLE", options->table, "table (" + table_endings() + ")")
       ->required()
       ->type_name("FILE");

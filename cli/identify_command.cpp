@@ -209,11 +209,7 @@ void identify_file(const IdentifyCommandOptions& options) {
 
 void add_identify_command(CLI::App& program) {
   const auto options = std::make_shared<IdentifyCommandOptions>();
-  CLI::App* command = program.add_subcommand(
-      "identify",
-      "Says which parameters a table can reveal: predicted for a material on a grid, or for a "
-      "measured table at the material fitted to it, and verified by fitting noisy tables.\n"
-      "Example: clothbrdf identify materials/silk.json --grid halfdiff3d:24x24x48 --noise 0.01");
+  CLI::App* command = program.add_subcommand("identify", kIdentifySummary);
   command->add_option("FILE", options->file, "material (.json) or table (" + table_endings() + ")")
       ->required()
       ->type_name("FILE");

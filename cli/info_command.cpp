@@ -57,8 +57,8 @@ Json table_info(const std::string& file, const Format& format, const Table& tabl
   const TableSpec& spec = table.spec();
   Json info = {{"file", file}, {"format", format.name}, {"value", "f_r, 1/sr, without the cosine"}};
   info["grid"] = spec.description();
-  info["axes"] = Json::array();
-  for (const Axis& axis : spec.grid().axes) {
+  if (spec.has_grid()) info["axes"] = Json::array();
+  for (const Axis& axis : spec.has_grid() ? spec.grid().axes : std::vector<Axis>{}) {
     info["axes"].push_back({{"name", axis.name},
                             {"cells", axis.size},
                             {"from_deg", axis.lowest_deg},

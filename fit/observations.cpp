@@ -197,7 +197,8 @@ void observe_half_difference(const TableSpec& spec, Reflectance reflectance, Obs
 // Sites of pairs of directions, before equal cos_theta_d are made one.
 class PairSites {
  public:
-  PairSites(Reflectance reflectance, Observations& out) : reflectance_(reflectance), out_(out) {}
+  PairSites(const TableSpec& spec, Reflectance reflectance, Observations& out)
+      : isotropic_(spec.isotropic()), reflectance_(reflectance), out_(out) {}
 
   // A cell by its pairs and their shares of it; nothing where all are below the horizon.
   void add_cell(const std::vector<std::pair<DirectionPair, double>>& pairs,
@@ -214,7 +215,9 @@ class PairSites {
       }
       const double sin_theta = std::hypot(g.h_weft, g.h_warp);
       HalfVector half{.sin_theta = sin_theta, .cos_theta = g.h_n};
-      if (sin_theta > 0) {
+      if (isotropic_) {
+        half.kind = HalfVector::Kind::kCircle;
+      } else if (sin_theta > 0) {
         half.cos_phi = g.h_weft / sin_theta;
         half.sin_phi = g.h_warp / sin_theta;
       } else {
@@ -264,6 +267,7 @@ class PairSites {
   }
 
  private:
+  bool isotropic_;
   Reflectance reflectance_;
   Observations& out_;
   std::vector<double> x_;
@@ -273,7 +277,7 @@ void observe_in_out(const TableSpec& spec, Reflectance reflectance, Observations
                     Workers workers) {
   const Grid& grid = spec.grid();
   out.value_stride = grid.column_count();
-  PairSites sites(reflectance, out);
+  PairSites sites(spec, reflectance, out);
   std::vector<std::pair<DirectionPair, double>> pairs;
   for (std::size_t cell = 0; cell < grid.cell_count(); ++cell) {
     if (cell % 4096 == 0) workers.check();
@@ -312,7 +316,7 @@ Observations observe(const TableSpec& spec, Reflectance reflectance, Workers wor
   Observations out;
   out.channels = spec.channels.size();
   if (!spec.has_grid()) {
-    PairSites sites(reflectance, out);
+    PairSites sites(spec, reflectance, out);
     out.value_stride = 1;
     for (std::size_t k = 0; k < spec.pairs().size(); ++k) {
       sites.add_cell({{spec.pairs()[k], 1.0}}, k * spec.row_values());

@@ -279,6 +279,7 @@ Format exr_format() {
           .default_samples = exr_samples,
           .colours = [](const WriteOptions&) { return Colours::kAny; },
           .keeps_description = true,
+          .averages = "",
           .precision = exr_precision,
           .check = check_exr,
           .layout = own_samples,

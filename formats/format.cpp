@@ -56,8 +56,8 @@ void check_output(const Format& format, const TableSpec& spec, const WriteOption
                   const std::string& name) {
   for (const std::string_view option : options.given()) {
     if (std::find(format.options.begin(), format.options.end(), option) == format.options.end()) {
-      throw InputError(name + ": " + std::string(option) + " is not for " +
-                       std::string(format.name) + " files");
+      throw InputError(name + ": " + std::string(option) +
+                       " is not allowed: " + std::string(format.name) + " has no such choice");
     }
   }
   check_colours(format, spec, options, name);

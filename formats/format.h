@@ -23,8 +23,7 @@ struct WriteOptions {
   bool half = false;                    ///< 16-bit floats; a value that does not fit is an error
   bool compress = false;                ///< without loss
   std::optional<Flavour> flavour = {};  ///< RGB where left out
-  std::optional<std::uint64_t>
-      bytes;  ///< the largest file allowed; the format's own where left out
+  std::optional<std::uint64_t> bytes = {};  ///< the largest file; the format's own where left out
   Workers workers = {};
 
   /// The names of the options that were given.
@@ -55,6 +54,8 @@ struct Format {
   Samples (*default_samples)(Reflectance reflectance, bool isotropic);
   Colours (*colours)(const WriteOptions& options);
   bool keeps_description;  ///< whether a file says what its table was made of
+  /// What its values are means of, for people; empty where they are those of directions.
+  std::string_view averages;
   StoredPrecision (*precision)(const WriteOptions& options);
   /// Throws InputError, in one line that starts with the file's name, where the format cannot hold
   /// the table. Options and colours are check_output's.

@@ -115,6 +115,7 @@ Format merl_format() {
           .default_samples = merl_samples,
           .colours = [](const WriteOptions&) { return Colours::kRgb; },
           .keeps_description = false,
+          .averages = "",
           .precision = [](const WriteOptions&) { return StoredPrecision{}; },
           .check = check_merl,
           .layout = own_samples,

@@ -101,8 +101,10 @@ std::unique_ptr<Cloth> material_cloth(const Material& material, const std::strin
 }
 
 std::unique_ptr<Cloth> table_cloth(Table table, const std::string& name) {
-  if (!table.spec().has_grid()) {
-    throw InputError(name + ": is a list of pairs; a picture needs a grid");
+  if (!table.complete()) {
+    throw InputError(name +
+                     ": is a list of scattered samples; a picture needs a table that answers "
+                     "all directions");
   }
   auto cloth = std::make_unique<TableCloth>(std::move(table));
   if (!cloth->has(Part::kTotal)) {

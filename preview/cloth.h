@@ -52,7 +52,8 @@ std::unique_ptr<Cloth> material_cloth(const Material& material, const std::strin
                                       const Workers& workers = 1);
 
 /// Interpolated between the table's nodes (Table::interpolate). Throws InputError, starting with
-/// `name`, where the table has no channels R, G and B or is no grid.
+/// `name`, where the table has no channels R, G and B or does not answer
+/// all pairs.
 std::unique_ptr<Cloth> table_cloth(Table table, const std::string& name);
 
 /// The same cloth with its weave turned, counter-clockwise seen from the normal.

@@ -98,15 +98,15 @@ void integrate_half_vectors(const Table& table, const Vector3<double>& wi,
 
 void integrate_outgoing(const Table& table, const Vector3<double>& wi, std::span<double> albedo) {
   constexpr double kWidest = 2;
-  const std::vector<Axis>& axes = table.spec().grid().axes;
-  const auto fine = [&](const Axis& axis) {
-    const double range = axis.highest_deg;
-    return even_steps(
-        range, axis.size * std::max(1, static_cast<int>(std::ceil(range / axis.size / kWidest))));
+  // Whole steps to a cell of the axis, where there is a grid.
+  const auto fine = [&](std::size_t axis, double range) {
+    const int cells = table.spec().has_grid() ? table.spec().grid().axes[axis].size : 1;
+    return even_steps(range,
+                      cells * std::max(1, static_cast<int>(std::ceil(range / cells / kWidest))));
   };
-  const std::vector<Step> phis = fine(axes[3]);
+  const std::vector<Step> phis = fine(3, 360);
   std::vector<double> sample(albedo.size());
-  for (const Step& theta : fine(axes[2])) {
+  for (const Step& theta : fine(2, 90)) {
     const double area = sincosd(theta.angle).sin * theta.width * phis[0].width * kRadian * kRadian;
     for (const Step& phi : phis) {
       const Vector3<double> wo = direction(theta.angle, phi.angle);
@@ -116,11 +116,18 @@ void integrate_outgoing(const Table& table, const Vector3<double>& wi, std::span
   }
 }
 
-std::vector<double> incident_thetas(const Grid& grid) {
+// Whether to integrate over wo; else over half vectors.
+bool over_outgoing(const TableSpec& spec) {
+  return !spec.has_grid() || spec.grid().kind == GridKind::kInOut;
+}
+
+std::vector<double> incident_thetas(const TableSpec& spec) {
   constexpr double kBeyond = 89;
   std::vector<double> thetas;
   for (double theta = 0; theta <= kHighestTheta; theta += 5) thetas.push_back(theta);
   thetas.push_back(kBeyond);
+  if (!spec.has_grid()) return thetas;
+  const Grid& grid = spec.grid();
   const bool over_wo = grid.kind == GridKind::kInOut;
   const Axis& axis = over_wo ? grid.axes[0] : grid.axes[grid.axes.size() - 2];
   const double steepest = over_wo ? axis.node_deg(axis.size - 1)
@@ -132,12 +139,12 @@ std::vector<double> incident_thetas(const Grid& grid) {
 }  // namespace
 
 std::vector<Albedo> albedo_by_theta(const Table& table, const Workers& workers) {
-  const Grid& grid = table.spec().grid();
-  const bool over_wo = grid.kind == GridKind::kInOut;
+  if (!table.complete()) return {};
+  const bool over_wo = over_outgoing(table.spec());
   std::optional<Table> weighted;
   if (!over_wo) weighted = with_cosines(table);
-  const std::vector<double> thetas = incident_thetas(grid);
-  const int azimuths = grid.kind == GridKind::kHalfDifference3d ? 1 : kAzimuths;
+  const std::vector<double> thetas = incident_thetas(table.spec());
+  const int azimuths = table.spec().isotropic() ? 1 : kAzimuths;
   if (workers.progress != nullptr) {
     workers.progress->begin("directional albedo",
                             thetas.size() * static_cast<std::size_t>(azimuths), "directions");

@@ -27,7 +27,8 @@ inline constexpr double kHighestTheta = 85;
 /// Half/difference tables are integrated over half vectors, in steps at most half as wide as their
 /// cells; f_r between nodes is their mean weighted by cos(theta_i) cos(theta_o), too: it may grow
 /// without bounds towards the horizon. In/out tables are integrated over wo, in steps of at most 2
-/// degrees, with f_r interpolated.
+/// degrees, with f_r interpolated; so are tables without a grid. None where the table does not
+/// answer all pairs (Table::complete).
 std::vector<Albedo> albedo_by_theta(const Table& table, const Workers& workers);
 
 }  // namespace clothbrdf

@@ -45,14 +45,15 @@ std::optional<std::size_t> mirror_cell(const Grid& grid, std::size_t cell) {
 
 ReciprocityCheck check_reciprocity(const Table& table) {
   const TableSpec& spec = table.spec();
-  const Grid& grid = spec.grid();
   ReciprocityCheck result;
-  result.by_construction = grid.kind != GridKind::kInOut && grid.axes.back().highest_deg <= 180;
+  result.by_construction = spec.has_grid() && spec.grid().kind != GridKind::kInOut &&
+                           spec.grid().axes.back().highest_deg <= 180;
   const std::optional<Material>& material = spec.provenance.material;
   result.promised = material && material->reflectance == Reflectance::kMicrofacet;
   result.allowed = 4 * table.precision().relative + kArithmetic;
   if (spec.cells.average) result.allowed += 2 * spec.cells.tolerance;
-  if (result.by_construction) return result;
+  if (result.by_construction || !spec.has_grid()) return result;
+  const Grid& grid = spec.grid();
   for (std::size_t cell = 0; cell < spec.cell_count(); ++cell) {
     const std::optional<std::size_t> mirror = mirror_cell(grid, cell);
     if (!mirror || *mirror <= cell || !table.valid(cell) || !table.valid(*mirror)) continue;
@@ -81,8 +82,8 @@ void count(Flaw& flaw, const TableValue& found, bool worse) {
 void check_values(const Table& table, TableCheck& check) {
   const TableSpec& spec = table.spec();
   for (std::size_t cell = 0; cell < spec.cell_count(); ++cell) {
-    const bool below = !spec.grid().any_above_horizon(cell);
-    const bool above = spec.grid().node_above_horizon(cell);
+    const bool above = spec.node_above_horizon(cell);
+    const bool below = spec.has_grid() ? !spec.grid().any_above_horizon(cell) : !above;
     check.below_horizon += below;
     check.masked += above && !table.valid(cell);
     for (std::size_t c = 0; c < spec.channels.size(); ++c) {

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
+#include <random>
 #include <utility>
 
 #include "support/errors.h"
@@ -27,10 +29,29 @@ struct SharedCell {
   double weight;  // (cos theta_i cos theta_o)^2 at its node; 0 where that is below the horizon
 };
 
-SharedCell shared_cell(const Grid& grid, std::size_t cell) {
-  const Directions node = grid.directions(cell);
+// All pairs of a list count the same.
+SharedCell shared_cell(const TableSpec& spec, std::size_t cell) {
+  const Directions node = spec.directions(cell);
   const double cosines = std::max(0.0, node.wi[2]) * std::max(0.0, node.wo[2]);
-  return {cell, grid.measure(cell), cosines * cosines};
+  return {cell, spec.has_grid() ? spec.grid().measure(cell) : 1, cosines * cosines};
+}
+
+PairList random_pairs(bool isotropic) {
+  std::mt19937_64 engine(1);
+  const auto share = [&] { return static_cast<double>(engine() >> 11U) * 0x1p-53; };
+  const double lowest_cosine = sincosd(kComparedTheta).cos;
+  const auto theta_deg = [&] {
+    return std::acos(1 - share() * (1 - lowest_cosine)) * (180 / std::numbers::pi);
+  };
+  PairList list{{}, isotropic};
+  list.pairs.reserve(kComparedPairs);
+  while (list.pairs.size() < kComparedPairs) {
+    const double theta_i = theta_deg();
+    const double phi_i = 360 * share();
+    const double theta_o = theta_deg();
+    list.pairs.push_back({theta_i, phi_i, theta_o, 360 * share()});
+  }
+  return list;
 }
 
 struct SizedDifference {
@@ -89,6 +110,7 @@ ChannelDifference difference(const Table& a, const Table& b, const SharedChannel
       d.worst_cell = cell;
     }
   }
+  d.place = a.spec().place(d.worst_cell);
   d.a = a.value(d.worst_cell, channel.a);
   d.b = b.value(d.worst_cell, channel.b);
   d.rms = squares == 0 ? 0 : std::sqrt(squares / all_squares);
@@ -98,18 +120,30 @@ ChannelDifference difference(const Table& a, const Table& b, const SharedChannel
 
 }  // namespace
 
-Comparison compare(const Table& a, const Table& b, const Workers& workers) {
-  const std::vector<SharedChannel> shared = shared_channels(a.spec(), b.spec());
+Comparison compare(const Table& first, const Table& second, const Workers& workers) {
+  const std::vector<SharedChannel> shared = shared_channels(first.spec(), second.spec());
   if (shared.empty()) throw InputError("the tables have no channel in common");
-  std::optional<Table> resampled;
-  if (b.spec().grid() != a.spec().grid()) resampled = resample(b, a.spec().grid(), workers);
-  const Table& there = resampled ? *resampled : b;
   Comparison comparison;
+  std::optional<Table> random;
+  if (first.spec().has_grid()) {
+    comparison.samples = "the nodes of " + first.spec().description();
+  } else if (first.complete()) {
+    random = resample(first, random_pairs(first.spec().isotropic()), workers);
+    comparison.samples = "random pairs";
+  } else {
+    comparison.samples = "the samples of the first table";
+  }
+  const Table& a = random ? *random : first;
+  std::optional<Table> resampled;
+  if (second.spec().samples != a.spec().samples) {
+    resampled = resample(second, a.spec().samples, workers);
+  }
+  const Table& b = resampled ? *resampled : second;
   std::vector<SharedCell> cells;
   for (std::size_t cell = 0; cell < a.spec().cell_count(); ++cell) {
     if (!a.valid(cell)) continue;
-    if (a.finite(cell) && there.valid(cell) && there.finite(cell)) {
-      cells.push_back(shared_cell(a.spec().grid(), cell));
+    if (a.finite(cell) && b.valid(cell) && b.finite(cell)) {
+      cells.push_back(shared_cell(a.spec(), cell));
     } else {
       ++comparison.only_a;
     }
@@ -117,7 +151,7 @@ Comparison compare(const Table& a, const Table& b, const Workers& workers) {
   if (cells.empty()) throw InputError("the tables have no valid cell in common");
   comparison.cells = cells.size();
   for (const SharedChannel& channel : shared) {
-    comparison.channels.push_back(difference(a, there, channel, cells));
+    comparison.channels.push_back(difference(a, b, channel, cells));
   }
   return comparison;
 }

@@ -24,6 +24,7 @@ class NearestSample final : public Interpolant {
   ~NearestSample() override;
 
   bool interpolate(const Directions& directions, std::span<double> values) const override;
+  bool complete() const override { return false; }
   std::string rule() const override;
 
  private:

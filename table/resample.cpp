@@ -2,10 +2,12 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -14,8 +16,9 @@
 namespace clothbrdf {
 namespace {
 
-bool tells_orders_apart(const Grid& grid) {
-  return grid.kind == GridKind::kInOut || grid.axes.back().highest_deg > 180;
+bool tells_orders_apart(const TableSpec& spec) {
+  if (!spec.has_grid()) return true;
+  return spec.grid().kind == GridKind::kInOut || spec.grid().axes.back().highest_deg > 180;
 }
 
 // Means of valid, finite cells, which are taken one after the other.
@@ -44,11 +47,11 @@ class Mean {
 // Values of a cell; false where it has none.
 using CellFunction = std::function<bool(std::size_t cell, std::vector<double>& values)>;
 
-// A table like `source` but for its grid and values; a phase of the progress.
-Table tabulated(const Table& source, const Grid& grid, const Workers& workers, const char* what,
-                const std::function<CellFunction()>& make_function) {
+// A table like `source` but for its samples and values; a phase of the progress.
+Table tabulated(const Table& source, const Samples& samples, const Workers& workers,
+                const char* what, const std::function<CellFunction()>& make_function) {
   TableSpec spec = source.spec();
-  spec.samples = grid;
+  spec.samples = samples;
   spec.cells = {};  // whatever the source's cells were: values are taken at nodes
   const std::size_t columns = spec.column_count();
   // A computed table has no cells that were not measured.
@@ -62,7 +65,7 @@ Table tabulated(const Table& source, const Grid& grid, const Workers& workers, c
       std::vector<double> sample;
       for (std::size_t column = 0; column < columns; ++column) {
         const std::size_t cell = row * columns + column;
-        if (!grid.node_above_horizon(cell)) continue;
+        if (!spec.node_above_horizon(cell)) continue;
         valid[cell] = function(cell, sample) ? 1 : 0;
         if (valid[cell] == 0) sample.assign(sample.size(), mark);
         for (std::size_t c = 0; c < sample.size(); ++c) {
@@ -73,6 +76,15 @@ Table tabulated(const Table& source, const Grid& grid, const Workers& workers, c
     });
   });
   return {std::move(spec), std::move(values), std::move(valid), source.precision()};
+}
+
+// Adds f_r with the cloth turned back by each of `rotations` equal steps.
+void add_rotations(const Table& source, const Directions& d, int rotations,
+                   std::span<double> sample, Mean& mean) {
+  for (int k = 0; k < rotations; ++k) {
+    const SinCos<double> turn = sincosd(360.0 * k / rotations);
+    if (source.interpolate({turned(d.wi, turn), turned(d.wo, turn)}, sample)) mean.add(sample);
+  }
 }
 
 // The mean over rotations of the cloth, at the nodes of the source's azimuths: a half/difference
@@ -102,38 +114,72 @@ Table isotropic_mean(const Table& source, const Workers& workers) {
 
 }  // namespace
 
-bool averages_rotations(const Grid& source, const Grid& target) {
-  return target.kind == GridKind::kHalfDifference3d && source.kind != GridKind::kHalfDifference3d;
+int rotation_count(const TableSpec& source) {
+  constexpr int kWithoutGrid = 72;
+  if (source.isotropic()) return 1;
+  if (!source.has_grid()) return kWithoutGrid;
+  const Axis& azimuth = source.grid().axes[1];
+  return azimuth.size * static_cast<int>(std::lround(360 / azimuth.highest_deg));
 }
 
-bool averages_orders(const Grid& source, const Grid& target) {
+bool averages_rotations(const TableSpec& source, const TableSpec& target) {
+  return target.isotropic() && !source.isotropic();
+}
+
+bool averages_orders(const TableSpec& source, const TableSpec& target) {
   return tells_orders_apart(source) && !tells_orders_apart(target);
 }
 
-Table resample(const Table& source, const Grid& grid, const Workers& workers) {
-  const Grid& from = source.spec().grid();
-  if (from == grid) return source;
-  const bool isotropic = averages_rotations(from, grid);
+Table resample(const Table& source, const Samples& samples, const Workers& workers) {
+  if (source.spec().samples == samples) return source;
+  TableSpec target = source.spec();
+  target.samples = samples;
+  const bool isotropic = averages_rotations(source.spec(), target);
   std::optional<Table> mean;
-  if (isotropic) mean = isotropic_mean(source, workers);
+  // Cheaper than a mean for each node of the target.
+  if (isotropic && source.spec().has_grid() && target.has_grid()) {
+    mean = isotropic_mean(source, workers);
+  }
   const Table& table = mean ? *mean : source;
-  if (table.spec().grid() == grid) return table;
+  if (table.spec().samples == samples) return table;
+  const int rotations = isotropic && !mean ? rotation_count(source.spec()) : 1;
   const std::optional<Material>& material = source.spec().provenance.material;
   const bool reciprocal = material && material->reflectance == Reflectance::kMicrofacet;
-  const bool both_orders = tells_orders_apart(from) && (reciprocal || averages_orders(from, grid));
+  const bool both_orders = source.spec().has_grid() && tells_orders_apart(source.spec()) &&
+                           (reciprocal || averages_orders(source.spec(), target));
   const std::size_t channels = source.spec().channels.size();
-  return tabulated(source, grid, workers, "resampling", [&]() -> CellFunction {
+  return tabulated(source, samples, workers, "resampling", [&]() -> CellFunction {
     return [&, both = Mean(channels), sample = std::vector<double>(channels)](
                std::size_t cell, std::vector<double>& values) mutable {
-      const auto add = [&](const Vector3<double>& wi, const Vector3<double>& wo) {
-        if (table.interpolate({wi, wo}, sample)) both.add(sample);
-      };
-      const Directions d = grid.directions(cell);
-      add(d.wi, d.wo);
-      if (both_orders) add(d.wo, d.wi);
+      const Directions d = target.directions(cell);
+      add_rotations(table, d, rotations, sample, both);
+      if (both_orders) add_rotations(table, {d.wo, d.wi}, rotations, sample, both);
       return both.take(values);
     };
   });
+}
+
+TablePairs::TablePairs(const Table& table, bool isotropic)
+    : table_(table), spec_(table.spec()), rotations_(isotropic ? rotation_count(table.spec()) : 1) {
+  spec_.samples = AnyPairs{isotropic};
+  spec_.cells = {};
+}
+
+void TablePairs::fill_rows(std::size_t /*none*/, std::span<double> /*none*/) const {
+  throw std::logic_error("pairs have no rows");
+}
+
+void TablePairs::fill_pairs(std::span<const Directions> pairs, std::span<double> values) const {
+  const std::size_t channels = spec_.channels.size();
+  Mean mean(channels);
+  std::vector<double> sample(channels);
+  std::vector<double> taken;
+  for (const Directions& pair : pairs) {
+    add_rotations(table_, pair, rotations_, sample, mean);
+    mean.take(taken);
+    std::copy(taken.begin(), taken.end(), values.begin());
+    values = values.subspan(channels);
+  }
 }
 
 }  // namespace clothbrdf

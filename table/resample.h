@@ -5,24 +5,43 @@
 
 namespace clothbrdf {
 
-/// A table of a grid on the nodes of another grid, by Table::interpolate; the same table where the
-/// grids are equal. Cells are valid where the node is above the horizon and valid cells of the
-/// source lie around it; the others hold 0 below the horizon and, above it, 0 in a table of a known
+/// A table at other samples, a grid or a list of pairs, by Table::interpolate; the same table where
+/// the samples are equal. Cells are valid where the node is above the horizon and the source says
+/// something there; the others hold 0 below the horizon and, above it, 0 in a table of a known
 /// material, else kNotMeasured.
 ///
-/// - A target without phi_h holds the mean over rotations of the cloth, as many as the source has
-///   azimuths.
+/// - Isotropic samples of an anisotropic source hold the mean over rotations of the cloth, as many
+///   as the source has azimuths (rotation_count).
 /// - A target whose phi_d ends at 180 degrees holds the mean of f(wi, wo) and f(wo, wi), where the
 ///   source tells them apart; so does any target where the material promises that they are equal,
 ///   for nodes of the source that are no mirror images of each other.
 ///
-/// Begins a phase of the workers' progress for each pass over a grid.
-Table resample(const Table& source, const Grid& grid, const Workers& workers);
+/// Begins a phase of the workers' progress for each pass.
+Table resample(const Table& source, const Samples& samples, const Workers& workers);
 
-/// Whether the target is the mean over rotations of an anisotropic source.
-bool averages_rotations(const Grid& source, const Grid& target);
+/// How many rotations of the cloth its mean is taken over.
+int rotation_count(const TableSpec& source);
+
+/// Whether a target holds the mean over rotations of an anisotropic source.
+bool averages_rotations(const TableSpec& source, const TableSpec& target);
 
 /// Whether the target is the mean of both orders of the directions.
-bool averages_orders(const Grid& source, const Grid& target);
+bool averages_orders(const TableSpec& source, const TableSpec& target);
+
+/// A table as a source of any pairs of directions: what a format with nodes of its own is written
+/// from. Keeps a reference to the table.
+class TablePairs final : public Producer {
+ public:
+  /// Isotropic: the mean over rotation_count() rotations, where the table itself is not isotropic.
+  TablePairs(const Table& table, bool isotropic);
+  const TableSpec& spec() const override { return spec_; }
+  void fill_rows(std::size_t first_row, std::span<double> values) const override;  ///< has none
+  void fill_pairs(std::span<const Directions> pairs, std::span<double> values) const override;
+
+ private:
+  const Table& table_;
+  TableSpec spec_;
+  int rotations_;
+};
 
 }  // namespace clothbrdf

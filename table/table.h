@@ -27,6 +27,9 @@ class Interpolant {
   /// the table says nothing.
   virtual bool interpolate(const Directions& directions, std::span<double> values) const = 0;
 
+  /// Whether it answers all pairs above the horizon.
+  virtual bool complete() const { return true; }
+
   /// For people: "linear between nodes".
   virtual std::string rule() const = 0;
 };
@@ -46,6 +49,8 @@ class Table final : public Producer {
 
   /// How interpolate() works, for people.
   std::string interpolation() const;
+  /// Whether it answers all pairs above the horizon, but for cells that are not valid.
+  bool complete() const { return !interpolant_ || interpolant_->complete(); }
 
   /// f_r of each channel between the samples, by the table's interpolant. Without one, between the
   /// nodes of a grid: linear in each axis's own coordinate.

@@ -184,7 +184,8 @@ TEST_CASE("tables without channels R, G and B or without a grid are refused in o
   TableSpec pairs;
   pairs.samples = PairList{{{0, 0, 0, 0}}};
   pairs.channels = {{"R", Part::kTotal, 0}, {"G", Part::kTotal, 1}, {"B", Part::kTotal, 2}};
-  CHECK(why(Table(pairs, {1, 2, 3}, {1})) == "t: is a list of pairs; a picture needs a grid");
+  CHECK(why(Table(pairs, {1, 2, 3}, {1})) ==
+        "t: is a list of scattered samples; a picture needs a table that answers all directions");
 }
 
 TEST_CASE("a table's channels are found by name and part, whatever their order") {

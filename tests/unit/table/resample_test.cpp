@@ -154,8 +154,10 @@ TEST_CASE("what a target averages is told") {
                              {true, true, false, false}};
   for (std::size_t from = 0; from < 4; ++from) {
     for (std::size_t to = 0; to < 4; ++to) {
-      CHECK(averages_rotations(grids[from], grids[to]) == rotations[from][to]);
-      CHECK(averages_orders(grids[from], grids[to]) == orders[from][to]);
+      const TableSpec source{grids[from], {}, {}, {}};
+      const TableSpec target{grids[to], {}, {}, {}};
+      CHECK(averages_rotations(source, target) == rotations[from][to]);
+      CHECK(averages_orders(source, target) == orders[from][to]);
     }
   }
 }

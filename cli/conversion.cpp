@@ -1,0 +1,167 @@
+#include "cli/conversion.h"
+
+#include <algorithm>
+#include <iomanip>
+#include <sstream>
+#include <utility>
+
+#include "cli/options.h"
+#include "support/errors.h"
+#include "table/resample.h"
+
+namespace clothbrdf {
+namespace {
+
+bool holds_components(const TableSpec& spec) {
+  return std::any_of(spec.channels.begin(), spec.channels.end(),
+                     [](const Channel& channel) { return channel.part != Part::kTotal; });
+}
+
+// The samples to try, those that lose least first.
+std::vector<Samples> candidates(const TableSpec& source, const Format& format,
+                                const ConversionWish& wish) {
+  const auto& material = source.provenance.material;
+  const Reflectance reflectance = material ? material->reflectance : Reflectance::kMicrofacet;
+  const bool isotropic = wish.isotropic || source.isotropic();
+  const Samples standard = format.default_samples(reflectance, isotropic);
+  if (wish.grid) {
+    const bool once_around = reflectance == Reflectance::kPaper && format.keeps_description;
+    return {parse_grid(*wish.grid, once_around ? 360 : 180)};
+  }
+  std::vector<Samples> samples;
+  if (!wish.isotropic || source.isotropic()) samples.push_back(source.samples);
+  samples.emplace_back(AnyPairs{isotropic});
+  samples.emplace_back(AnyPairs{true});
+  samples.push_back(standard);
+  return samples;
+}
+
+std::vector<std::string> what_is_lost(const Table& source, const Conversion& conversion,
+                                      const WriteOptions& options) {
+  const TableSpec& from = source.spec();
+  const TableSpec& to = conversion.spec;
+  const Format& format = *conversion.format;
+  std::vector<std::string> lost;
+  if (averages_rotations(from, to)) {
+    lost.emplace_back("anisotropy: the mean over rotations of the cloth");
+  }
+  const auto& material = from.provenance.material;
+  const bool reciprocal = material && material->reflectance == Reflectance::kMicrofacet;
+  if (averages_orders(from, to) && !reciprocal) {
+    lost.emplace_back("the order of the directions: the mean of f(wi,wo) and f(wo,wi)");
+  }
+  if (!format.averages.empty()) lost.emplace_back(std::string(format.averages));
+  if (from.samples != to.samples) {
+    const std::string target =
+        to.has_grid() ? to.description() : format.layout(to, options).description;
+    lost.push_back("the nodes: resampled from " + from.description() + " to " + target + ", " +
+                   source.interpolation());
+    if (from.cells.average) lost.emplace_back("the averages over cells: values at nodes");
+  }
+  if (holds_components(from) && !holds_components(to)) {
+    lost.emplace_back("the components: totals only");
+  }
+  const auto [rounding, step] = format.precision(options);
+  if (rounding > source.precision().relative) {
+    std::ostringstream text;
+    text << "digits: rounded by up to " << std::setprecision(2) << rounding
+         << " of the value, or by " << step / 2 << " where that is more";
+    lost.push_back(text.str());
+  }
+  if (!format.keeps_description && !from.provenance.program.empty()) {
+    lost.emplace_back("the description: material, effects and cells");
+  }
+  return lost;
+}
+
+/// The largest differences of any channel.
+ChannelDifference worst_of(const Comparison& comparison) {
+  ChannelDifference worst;
+  for (const ChannelDifference& d : comparison.channels) {
+    worst.rms = std::max(worst.rms, d.rms);
+    worst.p99 = std::max(worst.p99, d.p99);
+    worst.max = std::max(worst.max, d.max);
+  }
+  return worst;
+}
+
+std::size_t not_measured(const Table& table) {
+  std::size_t count = 0;
+  for (std::size_t cell = 0; cell < table.spec().cell_count(); ++cell) {
+    count += !table.valid(cell) && table.spec().node_above_horizon(cell) ? 1U : 0U;
+  }
+  return count;
+}
+
+}  // namespace
+
+Conversion plan_conversion(const Table& source, const ConversionWish& wish) {
+  const Format& format = format_for(wish.out);
+  const std::vector<Samples> all = candidates(source.spec(), format, wish);
+  for (const Samples& samples : all) {
+    for (const bool components : {true, false}) {
+      Conversion conversion{&format, source.spec(), {}, {}};
+      TableSpec& spec = conversion.spec;
+      spec.samples = samples;
+      if (!components) {
+        std::erase_if(spec.channels, [](const Channel& c) { return c.part != Part::kTotal; });
+      }
+      try {
+        check_output(format, spec, wish.write, wish.out);
+      } catch (const InputError&) {
+        if (!components && &samples == &all.back()) throw;
+        continue;
+      }
+      if (std::holds_alternative<AnyPairs>(samples) && !source.complete()) {
+        throw InputError(wish.out +
+                         ": the source's scattered samples do not cover all directions, " +
+                         std::string(format.name) + " does; a list of pairs (.alta) can hold them");
+      }
+      if (samples != source.spec().samples) spec.cells = {};
+      conversion.lost = what_is_lost(source, conversion, wish.write);
+      return conversion;
+    }
+  }
+  throw std::logic_error("the last choice returns or throws");
+}
+
+std::optional<ChannelDifference> run_conversion(const Table& source, const ConversionWish& wish,
+                                                Conversion& conversion, AtomicFile& file) {
+  const Workers& workers = wish.write.workers;
+  const TableSpec& target = conversion.spec;
+  const auto write = [&](const Producer& producer) {
+    if (workers.progress != nullptr) {
+      workers.progress->begin(wish.out, conversion.format->layout(target, wish.write).cells,
+                              "cells");
+    }
+    write_table(*conversion.format, producer, file, wish.write);
+    file.commit();
+  };
+  std::optional<Table> totals;
+  if (holds_components(source.spec()) && !holds_components(target)) {
+    totals = without_components(source);
+  }
+  const Table& from = totals ? *totals : source;
+  if (std::holds_alternative<AnyPairs>(target.samples)) {
+    write(TablePairs(from, target.isotropic()));
+    conversion.compared_at = "at random pairs, as the file is read";
+    // The written table comes first: what it cannot tell, rotations of the cloth, is averaged.
+    return worst_of(compare(conversion.format->read(wish.out), from, workers));
+  }
+  if (target.samples == from.spec().samples) {
+    write(from);
+    return std::nullopt;
+  }
+  const Table resampled = resample(from, target.samples, workers);
+  if (const std::size_t count = not_measured(resampled); count > 0) {
+    conversion.lost.push_back(
+        with_commas(count) + " cells, which have no cell to be interpolated from: they hold " +
+        (source.spec().provenance.material ? "0" : "-1, the mark of such cells"));
+  }
+  conversion.compared_at = "at the old nodes";
+  const ChannelDifference worst = worst_of(compare(from, resampled, workers));
+  write(resampled);
+  return worst;
+}
+
+}  // namespace clothbrdf
