@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "cli/options.h"
+#include "formats/format_colours.h"
 #include "support/errors.h"
 #include "table/resample.h"
 
@@ -61,6 +62,9 @@ std::vector<std::string> what_is_lost(const Table& source, const Conversion& con
   if (holds_components(from) && !holds_components(to)) {
     lost.emplace_back("the components: totals only");
   }
+  if (const std::string colours = colours_note(from, to); !colours.empty()) {
+    lost.push_back(colours);
+  }
   const auto [rounding, step] = format.precision(options);
   if (rounding > source.precision().relative) {
     std::ostringstream text;
@@ -85,6 +89,14 @@ ChannelDifference worst_of(const Comparison& comparison) {
   return worst;
 }
 
+// How far a file is from its source, in the file's colours, at random pairs.
+Comparison compare_with_file(const Table& written, const Table& source, const Format& format,
+                             const WriteOptions& options) {
+  const Table there = resample(source, compared_pairs(written.spec().isotropic()), options.workers);
+  const std::unique_ptr<Producer> coloured = in_colours_of(format, there, options);
+  return compare(coloured ? collect(*coloured, options.workers) : there, written, options.workers);
+}
+
 std::size_t not_measured(const Table& table) {
   std::size_t count = 0;
   for (std::size_t cell = 0; cell < table.spec().cell_count(); ++cell) {
@@ -105,6 +117,7 @@ Conversion plan_conversion(const Table& source, const ConversionWish& wish) {
       spec.samples = samples;
       if (!components) {
         std::erase_if(spec.channels, [](const Channel& c) { return c.part != Part::kTotal; });
+        spec = in_colours_of(format, spec, wish.write);
       }
       try {
         check_output(format, spec, wish.write, wish.out);
@@ -129,7 +142,10 @@ std::optional<ChannelDifference> run_conversion(const Table& source, const Conve
                                                 Conversion& conversion, AtomicFile& file) {
   const Workers& workers = wish.write.workers;
   const TableSpec& target = conversion.spec;
-  const auto write = [&](const Producer& producer) {
+  const auto write = [&](const Producer& uncoloured) {
+    const std::unique_ptr<Producer> coloured =
+        in_colours_of(*conversion.format, uncoloured, wish.write);
+    const Producer& producer = coloured ? *coloured : uncoloured;
     if (workers.progress != nullptr) {
       workers.progress->begin(wish.out, conversion.format->layout(target, wish.write).cells,
                               "cells");
@@ -145,8 +161,8 @@ std::optional<ChannelDifference> run_conversion(const Table& source, const Conve
   if (std::holds_alternative<AnyPairs>(target.samples)) {
     write(TablePairs(from, target.isotropic()));
     conversion.compared_at = "at random pairs, as the file is read";
-    // The written table comes first: what it cannot tell, rotations of the cloth, is averaged.
-    return worst_of(compare(conversion.format->read(wish.out), from, workers));
+    return worst_of(
+        compare_with_file(conversion.format->read(wish.out), from, *conversion.format, wish.write));
   }
   if (target.samples == from.spec().samples) {
     write(from);

@@ -9,6 +9,7 @@
 
 #include "cli/commands.h"
 #include "cli/conversion.h"
+#include "cli/file_options.h"
 #include "cli/options.h"
 #include "cli/progress_bar.h"
 #include "formats/format.h"
@@ -24,19 +25,14 @@ struct ConvertOptions {
   std::string out;
   std::optional<std::string> grid;
   std::optional<std::string> threads;
-  bool half = false;
-  bool compress = false;
+  FileOptions file;
   bool isotropic = false;
   bool json = false;
 };
 
-WriteOptions write_options(const ConvertOptions& options, Workers workers = {}) {
-  return {.half = options.half, .compress = options.compress, .workers = workers};
-}
-
-void report(const ConvertOptions& options, const Conversion& conversion, std::uint64_t bytes,
-            const std::optional<ChannelDifference>& error) {
-  const Layout layout = conversion.format->layout(conversion.spec, write_options(options));
+void report(const ConvertOptions& options, const ConversionWish& wish, const Conversion& conversion,
+            std::uint64_t bytes, const std::optional<ChannelDifference>& error) {
+  const Layout layout = conversion.format->layout(conversion.spec, wish.write);
   const std::size_t channels = conversion.spec.channels.size();
   if (options.json) {
     Json json = {{"file", options.out},
@@ -67,15 +63,17 @@ void convert(const ConvertOptions& options) {
   format_for(options.out);  // before a large table is read
   const Table source = read_table(options.in);
   ProgressBar bar;
-  const ConversionWish wish{.out = options.out,
-                            .grid = options.grid,
-                            .isotropic = options.isotropic,
-                            .write = write_options(options, {threads, &bar.progress()})};
+  ConversionWish wish{
+      .out = options.out, .grid = options.grid, .isotropic = options.isotropic, .write = {}};
+  const std::vector<FileToWrite> files = files_to_write(options.out, options.file);
+  if (files.size() > 1) throw InputError("--flavour: 'both' is not for convert: rgb or spectral");
+  wish.write = files.front().options;
+  wish.write.workers = {threads, &bar.progress()};
   Conversion conversion = plan_conversion(source, wish);
   AtomicFile file(options.out);
   const std::optional<ChannelDifference> error = run_conversion(source, wish, conversion, file);
   bar.clear();
-  report(options, conversion, file.size(), error);
+  report(options, wish, conversion, file.size(), error);
 }
 
 }  // namespace
@@ -97,9 +95,7 @@ void add_convert_command(CLI::App& program) {
                   "halfdiff3d[:THxTDxPD], halfdiff4d[:THxPHxTDxPD] or inout[:TIxPIxTOxPO]");
   command->add_flag("--isotropic", options->isotropic,
                     "the mean over rotations of the cloth: smaller files, and no weave");
-  command->add_flag("--half", options->half,
-                    "16-bit floats (EXR); a value that does not fit is an error");
-  command->add_flag("--compress", options->compress, "compress without loss (EXR)");
+  add_file_options(*command, options->file);
   add_threads_option(*command, options->threads);
   command->add_flag("--json", options->json, "say what was written as one JSON object");
   command->callback([options] { convert(*options); });

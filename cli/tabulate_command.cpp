@@ -13,9 +13,11 @@
 #include <vector>
 
 #include "cli/commands.h"
+#include "cli/file_options.h"
 #include "cli/options.h"
 #include "cli/progress_bar.h"
 #include "formats/format.h"
+#include "formats/format_colours.h"
 #include "formats/material_json.h"
 #include "support/errors.h"
 #include "tabulate/model_producer.h"
@@ -32,8 +34,7 @@ struct TabulateOptions {
   std::string cells = "point";
   std::optional<std::string> effects;
   std::optional<std::string> threads;
-  bool half = false;
-  bool compress = false;
+  FileOptions files;
   bool components = false;
   bool isotropic = false;
   bool dry_run = false;
@@ -43,29 +44,33 @@ struct TabulateOptions {
 struct Output {
   std::filesystem::path path;
   const Format* format;
-  TableSpec spec;
+  TableSpec computed;  // from the model
+  TableSpec spec;      // in the file's colours
+  WriteOptions options;
   std::string note;  // what this file cannot hold of the material
 };
 
-std::string what_is_lost(const Material& material, const TableSpec& spec) {
-  std::string note;
-  if (spec.isotropic()) note = "isotropic: the mean over phi_h";
-  const bool folded = spec.has_grid() && spec.grid().kind != GridKind::kInOut &&
-                      spec.grid().axes.back().highest_deg <= 180;
+std::string what_is_lost(const Material& material, const TableSpec& computed,
+                         const TableSpec& written, const Format& format) {
+  std::vector<std::string> lost;
+  if (written.isotropic()) lost.emplace_back("isotropic: the mean over phi_h");
+  const bool folded = written.has_grid() && written.grid().kind != GridKind::kInOut &&
+                      written.grid().axes.back().highest_deg <= 180;
   if (material.reflectance == Reflectance::kPaper && folded) {
-    note += (note.empty() ? "" : "; ") +
-            std::string("not reciprocal: the mean of both orders of the directions");
+    lost.emplace_back("not reciprocal: the mean of both orders of the directions");
   }
+  if (!format.averages.empty()) lost.emplace_back(format.averages);
+  if (const std::string colours = colours_note(computed, written); !colours.empty()) {
+    lost.push_back(colours);
+  }
+  std::string note;
+  for (const std::string& what : lost) note += (note.empty() ? "" : "; ") + what;
   return note;
 }
 
-WriteOptions write_options(const TabulateOptions& options, Workers workers = {}) {
-  return {.half = options.half, .compress = options.compress, .workers = workers};
-}
-
 Output plan_output(const TabulateOptions& options, const Material& material,
-                   const std::string& name) {
-  const Format& format = format_for(name);
+                   const FileToWrite& file) {
+  const Format& format = format_for(file.name);
   Samples samples = format.default_samples(material.reflectance, options.isotropic);
   if (options.grid) {
     const bool once_around =
@@ -73,17 +78,18 @@ Output plan_output(const TabulateOptions& options, const Material& material,
     samples = parse_grid(*options.grid, once_around ? 360 : 180);
   }
   const Effects effects = options.effects ? parse_effects(*options.effects) : Effects{};
-  TableSpec spec =
+  TableSpec computed =
       material_spec(material, effects, samples, parse_cells(options.cells), options.components);
-  check_output(format, spec, write_options(options), name);
-  check_producible(spec);
-  const std::string note = what_is_lost(material, spec);
-  return {name, &format, std::move(spec), note};
+  TableSpec spec = in_colours_of(format, computed, file.options);
+  check_output(format, spec, file.options, file.name);
+  check_producible(computed);
+  const std::string note = what_is_lost(material, computed, spec, format);
+  return {file.name, &format, std::move(computed), std::move(spec), file.options, note};
 }
 
 void report(const TabulateOptions& options, const Output& output, std::uint64_t bytes,
             double seconds) {
-  const Layout layout = output.format->layout(output.spec, write_options(options));
+  const Layout layout = output.format->layout(output.spec, output.options);
   if (options.json) {
     Json line = {{"file", output.path.string()},
                  {"format", output.format->name},
@@ -107,15 +113,16 @@ void report(const TabulateOptions& options, const Output& output, std::uint64_t 
   std::cout << text.str() << '\n';
 }
 
-void write(const TabulateOptions& options, const Output& output, AtomicFile& file,
-           Workers workers) {
-  const WriteOptions with_workers = write_options(options, workers);
+void write(const Output& output, AtomicFile& file, Workers workers) {
+  WriteOptions options = output.options;
+  options.workers = workers;
   workers.progress->begin(output.path.filename().string(),
-                          output.format->layout(output.spec, with_workers).cells, "cells");
-  const bool single = output.format->precision(with_workers).relative >= 0x1p-24;
+                          output.format->layout(output.spec, options).cells, "cells");
+  const bool single = output.format->precision(options).relative >= 0x1p-24;
   const std::unique_ptr<Producer> producer =
-      make_producer(output.spec, workers, single ? Precision::kSingle : Precision::kDouble);
-  write_table(*output.format, *producer, file, with_workers);
+      make_producer(output.computed, workers, single ? Precision::kSingle : Precision::kDouble);
+  const std::unique_ptr<Producer> coloured = in_colours_of(*output.format, *producer, options);
+  write_table(*output.format, coloured ? *coloured : *producer, file, options);
   workers.check();
   file.commit();
 }
@@ -133,11 +140,13 @@ void tabulate(const TabulateOptions& options) {
   const int threads = threads_of(options.threads);
   std::vector<Output> outputs;
   for (const std::string& name : options.outputs) {
-    if (std::any_of(outputs.begin(), outputs.end(),
-                    [&](const Output& other) { return same_file(other.path, name); })) {
-      throw InputError("--output: " + name + " is given twice");
+    for (const FileToWrite& file : files_to_write(name, options.files)) {
+      if (std::any_of(outputs.begin(), outputs.end(),
+                      [&](const Output& other) { return same_file(other.path, file.name); })) {
+        throw InputError("--output: " + file.name + " is given twice");
+      }
+      outputs.push_back(plan_output(options, material, file));
     }
-    outputs.push_back(plan_output(options, material, name));
   }
 
   ProgressBar bar;
@@ -151,7 +160,7 @@ void tabulate(const TabulateOptions& options) {
     for (; next < outputs.size(); ++next) {
       const Output& output = outputs[next];
       const auto start = std::chrono::steady_clock::now();
-      if (!options.dry_run) write(options, output, files[next], workers);
+      if (!options.dry_run) write(output, files[next], workers);
       const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
       bar.clear();
       report(options, output, files[next].size(), elapsed.count());
@@ -199,9 +208,7 @@ void add_tabulate_command(CLI::App& program) {
                     "also layers specular.*, internal.*, diffuse.* (EXR)");
   command->add_flag("--isotropic", options->isotropic,
                     "the mean over rotations of the cloth: smaller files, and no weave");
-  command->add_flag("--half", options->half,
-                    "16-bit floats (EXR); a value that does not fit is an error");
-  command->add_flag("--compress", options->compress, "compress without loss (EXR)");
+  add_file_options(*command, options->files);
   add_threads_option(*command, options->threads);
   command->add_flag("--dry-run", options->dry_run,
                     "check everything, say what would be written, write nothing");

@@ -6,38 +6,14 @@
 #include <cctype>
 #include <cerrno>
 #include <cstring>
-#include <iterator>
 #include <string>
 
 #include "formats/exr.h"
+#include "formats/format_colours.h"
 #include "formats/merl.h"
 #include "support/errors.h"
 
 namespace clothbrdf {
-namespace {
-
-void check_colours(const Format& format, const TableSpec& spec, const WriteOptions& options,
-                   const std::string& name) {
-  const Colours wanted = format.colours(options);
-  if (wanted == Colours::kAny) return;
-  const auto fits = [&](const Channel& channel, std::size_t index) {
-    constexpr std::string_view kRgb[] = {"R", "G", "B"};
-    if (channel.part != Part::kTotal) return false;
-    if (wanted == Colours::kSpectrum) return named_wavelength(channel.name).has_value();
-    return index < std::size(kRgb) && channel.name == kRgb[index];
-  };
-  bool all = wanted == Colours::kSpectrum || spec.channels.size() == 3;
-  for (std::size_t c = 0; c < spec.channels.size(); ++c) all = all && fits(spec.channels[c], c);
-  if (all) return;
-  throw InputError(
-      name + ": " + std::to_string(spec.channels.size()) + " channels (" +
-      full_name(spec.channels.front()) + " ... " + full_name(spec.channels.back()) +
-      ") are not allowed: " + std::string(format.name) +
-      (wanted == Colours::kRgb ? " holds R, G and B only" : " holds wavelengths only"));
-}
-
-}  // namespace
-
 std::span<const Format> formats() {
   static const Format kFormats[] = {merl_format(), exr_format()};
   return kFormats;

@@ -36,24 +36,6 @@ SharedCell shared_cell(const TableSpec& spec, std::size_t cell) {
   return {cell, spec.has_grid() ? spec.grid().measure(cell) : 1, cosines * cosines};
 }
 
-PairList random_pairs(bool isotropic) {
-  std::mt19937_64 engine(1);
-  const auto share = [&] { return static_cast<double>(engine() >> 11U) * 0x1p-53; };
-  const double lowest_cosine = sincosd(kComparedTheta).cos;
-  const auto theta_deg = [&] {
-    return std::acos(1 - share() * (1 - lowest_cosine)) * (180 / std::numbers::pi);
-  };
-  PairList list{{}, isotropic};
-  list.pairs.reserve(kComparedPairs);
-  while (list.pairs.size() < kComparedPairs) {
-    const double theta_i = theta_deg();
-    const double phi_i = 360 * share();
-    const double theta_o = theta_deg();
-    list.pairs.push_back({theta_i, phi_i, theta_o, 360 * share()});
-  }
-  return list;
-}
-
 struct SizedDifference {
   double difference;
   double size;
@@ -120,6 +102,24 @@ ChannelDifference difference(const Table& a, const Table& b, const SharedChannel
 
 }  // namespace
 
+PairList compared_pairs(bool isotropic) {
+  std::mt19937_64 engine(1);
+  const auto share = [&] { return static_cast<double>(engine() >> 11U) * 0x1p-53; };
+  const double lowest_cosine = sincosd(kComparedTheta).cos;
+  const auto theta_deg = [&] {
+    return std::acos(1 - share() * (1 - lowest_cosine)) * (180 / std::numbers::pi);
+  };
+  PairList list{{}, isotropic};
+  list.pairs.reserve(kComparedPairs);
+  while (list.pairs.size() < kComparedPairs) {
+    const double theta_i = theta_deg();
+    const double phi_i = 360 * share();
+    const double theta_o = theta_deg();
+    list.pairs.push_back({theta_i, phi_i, theta_o, 360 * share()});
+  }
+  return list;
+}
+
 Comparison compare(const Table& first, const Table& second, const Workers& workers) {
   const std::vector<SharedChannel> shared = shared_channels(first.spec(), second.spec());
   if (shared.empty()) throw InputError("the tables have no channel in common");
@@ -128,7 +128,7 @@ Comparison compare(const Table& first, const Table& second, const Workers& worke
   if (first.spec().has_grid()) {
     comparison.samples = "the nodes of " + first.spec().description();
   } else if (first.complete()) {
-    random = resample(first, random_pairs(first.spec().isotropic()), workers);
+    random = resample(first, compared_pairs(first.spec().isotropic()), workers);
     comparison.samples = "random pairs";
   } else {
     comparison.samples = "the samples of the first table";

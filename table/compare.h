@@ -32,6 +32,7 @@ struct Comparison {
 /// below kComparedTheta degrees, the same ones each time.
 inline constexpr std::size_t kComparedPairs = 50000;
 inline constexpr double kComparedTheta = 85;
+PairList compared_pairs(bool isotropic);
 
 /// Differences of b from a, at the nodes of a's grid or at its scattered samples; b is resampled
 /// there (resample.h) where its samples are others. A table that has no grid but answers all pairs

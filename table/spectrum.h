@@ -18,9 +18,9 @@ using ChannelMatrix = std::vector<std::vector<double>>;
 /// What linear R, G and B are made of, from samples of a reflectance at these wavelengths (nm,
 /// strictly ascending, at least one): 3 rows. Reflectance is read as renderers read it, linear
 /// between the samples and constant outside, and summed over the rows of kObserver. Each row's
-/// weights are scaled to add up to 1, so that a white spectrum is (1, 1, 1): the tables' D65 is that
-/// of Rec. 709 only to 1e-4.
-/// Colours outside Rec. 709 have values below 0. Throws std::invalid_argument.
+/// weights are scaled to add up to 1, so that a white spectrum is (1, 1, 1): the tables' D65 is
+/// that of Rec. 709 only to 1e-4. Colours outside Rec. 709 have values below 0. Throws
+/// std::invalid_argument.
 ChannelMatrix rgb_weights(std::span<const double> wavelengths_nm);
 
 /// Where spectra from R, G and B are sampled, nm: 380, 405, ... 780.
