@@ -102,8 +102,9 @@ std::string table_metadata(const TableSpec& spec) {
   for (const Axis& axis : spec.grid().axes) json["grid"]["axes"].push_back(axis_json(axis));
   json["channels"] = Json::array();
   for (const Channel& c : spec.channels) {
-    json["channels"].push_back(
-        {{"name", c.name}, {"part", name_of(kParts, c.part)}, {"colour", c.colour}});
+    Json channel = {{"name", c.name}, {"part", name_of(kParts, c.part)}};
+    if (c.colour != kNoColour) channel["colour"] = c.colour;
+    json["channels"].push_back(channel);
   }
   json["cells"] = {{"rule", spec.cells.average ? "average" : "point"}};
   if (spec.cells.average) json["cells"]["tolerance"] = spec.cells.tolerance;
@@ -123,7 +124,7 @@ TableSpec parse_table_metadata(std::string_view text, const std::string& name) {
   for (const nlohmann::json& c : json["channels"]) {
     spec.channels.push_back({c["name"].get<std::string>(),
                              value_of(kParts, c["part"].get<std::string>()),
-                             c["colour"].get<std::size_t>()});
+                             c.value("colour", kNoColour)});
   }
   spec.cells.average = json["cells"]["rule"] == "average";
   spec.cells.tolerance = json["cells"].value("tolerance", spec.cells.tolerance);
