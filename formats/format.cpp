@@ -11,6 +11,7 @@
 
 #include "formats/exr.h"
 #include "formats/merl.h"
+#include "formats/rgl.h"
 #include "support/errors.h"
 
 namespace clothbrdf {
@@ -39,7 +40,7 @@ void check_colours(const Format& format, const TableSpec& spec, const WriteOptio
 }  // namespace
 
 std::span<const Format> formats() {
-  static const Format kFormats[] = {merl_format(), exr_format()};
+  static const Format kFormats[] = {merl_format(), exr_format(), rgl_format()};
   return kFormats;
 }
 
