@@ -6,16 +6,12 @@
 #include "model/parameters.h"
 
 namespace clothbrdf {
-namespace {
 
-// "550nm"; "400_5nm" for 400.5, since picture formats read a dot as the end of a layer's name.
 std::string wavelength_name(double wavelength_nm) {
   std::string name = number_text(wavelength_nm) + "nm";
   std::replace(name.begin(), name.end(), '.', '_');
   return name;
 }
-
-}  // namespace
 
 std::vector<Channel> material_channels(const Material& material, bool with_components) {
   static const char* const kRgb[] = {"R", "G", "B"};

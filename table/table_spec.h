@@ -15,11 +15,14 @@ namespace clothbrdf {
 /// Which part of f_r a channel holds.
 enum class Part { kTotal, kSpecular, kInternal, kDiffuse };
 
+/// In the place of an absorption value's index: the channel is a sum over several of them.
+inline constexpr std::size_t kNoColour = static_cast<std::size_t>(-1);
+
 /// One channel of a table, for instance {"R", kTotal, 0}.
 struct Channel {
   std::string name;  ///< R, G, B or, of a spectral material, the wavelength as "550nm"
   Part part = Part::kTotal;
-  std::size_t colour;  ///< index of the material's absorption value
+  std::size_t colour;  ///< index of the material's absorption value, or kNoColour
 
   bool operator==(const Channel&) const = default;
 };
@@ -104,6 +107,10 @@ std::vector<Channel> material_channels(const Material& material, bool with_compo
 
 /// R, G and B, totals only.
 const std::vector<Channel>& rgb_channels();
+
+/// The name of a wavelength's channel: "550nm"; "400_5nm" for 400.5, since picture formats read a
+/// dot as the end of a layer's name.
+std::string wavelength_name(double wavelength_nm);
 
 /// The wavelength that a channel is named after, nm; none for other names.
 std::optional<double> named_wavelength(const std::string& channel_name);
