@@ -11,11 +11,12 @@
 #include "formats/exr.h"
 #include "formats/format_colours.h"
 #include "formats/merl.h"
+#include "formats/rgl.h"
 #include "support/errors.h"
 
 namespace clothbrdf {
 std::span<const Format> formats() {
-  static const Format kFormats[] = {merl_format(), exr_format()};
+  static const Format kFormats[] = {merl_format(), exr_format(), rgl_format()};
   return kFormats;
 }
 

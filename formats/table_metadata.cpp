@@ -98,8 +98,12 @@ std::string table_metadata(const TableSpec& spec) {
   if (from.material) {
     json["convention"] = convention_of(*from.material);
   }
-  json["grid"] = {{"kind", name_of(kKinds, spec.grid().kind)}, {"axes", Json::array()}};
-  for (const Axis& axis : spec.grid().axes) json["grid"]["axes"].push_back(axis_json(axis));
+  if (spec.has_grid()) {
+    json["grid"] = {{"kind", name_of(kKinds, spec.grid().kind)}, {"axes", Json::array()}};
+    for (const Axis& axis : spec.grid().axes) json["grid"]["axes"].push_back(axis_json(axis));
+  } else {
+    json["isotropic"] = spec.isotropic();
+  }
   json["channels"] = Json::array();
   for (const Channel& c : spec.channels) {
     Json channel = {{"name", c.name}, {"part", name_of(kParts, c.part)}};
@@ -120,7 +124,14 @@ TableSpec parse_table_metadata(std::string_view text, const std::string& name) {
   const nlohmann::json json = parse_json(text, name);
   check_against_schema(json, "table.schema.json", name);
   TableSpec spec;
-  spec.samples = parse_grid_json(json["grid"], name);
+  if (json.contains("grid") == json.contains("isotropic")) {
+    throw InputError(name + ": /grid, or /isotropic in its place, is needed");
+  }
+  if (json.contains("grid")) {
+    spec.samples = parse_grid_json(json["grid"], name);
+  } else {
+    spec.samples = AnyPairs{json["isotropic"].get<bool>()};
+  }
   for (const nlohmann::json& c : json["channels"]) {
     spec.channels.push_back({c["name"].get<std::string>(),
                              value_of(kParts, c["part"].get<std::string>()),
