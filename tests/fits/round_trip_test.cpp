@@ -134,4 +134,24 @@ TEST_CASE("random cloths come back from a MERL file up to the axes' and the yarn
   CHECK(with_noise.within >= kShareWithin * with_noise.with_error);
 }
 
+TEST_CASE("random cloths come back from scattered samples, isotropic or not") {
+  const std::uint64_t seed = seed_from_environment();
+  RandomInputs random(seed + 3);
+  Tally tally;
+  for (const bool isotropic : {false, true}) {
+    Material truth = random_cloth(random);
+    if (isotropic) truth.rotation_deg = 0;
+    PairList list{{}, isotropic};
+    for (int k = 0; k < 1500; ++k) {
+      list.pairs.push_back({random.uniform(0, 80), random.uniform(0, 360), random.uniform(0, 80),
+                            random.uniform(0, 360)});
+    }
+    const Table table = collect(*make_producer(material_spec(truth, {}, list), 1), 1);
+    const FitReport report = fit_table(table, conventions_of(truth), 1);
+    add(report, truth, isotropic ? 1 : 0, kExactly, tally);
+    CHECK(report.equivalents.empty() != isotropic);
+  }
+  std::cout << "round trip, scattered samples: " << tally << " (seed " << seed << ")\n";
+}
+
 }  // namespace clothbrdf::test
