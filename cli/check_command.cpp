@@ -54,7 +54,8 @@ std::string reciprocity_text(const TableSpec& spec, const ReciprocityCheck& r) {
 }
 
 std::string albedo_text(const TableSpec& spec, const Albedo& a) {
-  return short_number(a.value) + " at theta_i " + short_number(a.theta_i_deg) + " phi_i " +
+  const std::string of = a.of_eye ? "o " : "i ";
+  return short_number(a.value) + " at theta_" + of + short_number(a.theta_i_deg) + " phi_" + of +
          short_number(a.phi_i_deg) + " in " + full_name(spec.channels[a.channel]);
 }
 
@@ -117,8 +118,8 @@ void print_text(const CheckOptions& options, const TableSpec& spec, const TableC
   for (const Albedo& a : check.albedo) {
     std::ostringstream row;
     row << std::right << std::setw(7) << a.theta_i_deg << "  " << std::left << std::setw(8)
-        << short_number(a.value) << full_name(spec.channels[a.channel]) << ", phi_i "
-        << short_number(a.phi_i_deg);
+        << short_number(a.value) << full_name(spec.channels[a.channel])
+        << (a.of_eye ? ", eye at phi_o " : ", phi_i ") << short_number(a.phi_i_deg);
     line("", row.str());
   }
   for (const std::string& note : notes(spec, check)) line("note", note);
@@ -141,10 +142,15 @@ Json flaw_json(const TableSpec& spec, const Flaw& flaw) {
 }
 
 Json albedo_json(const TableSpec& spec, const Albedo& a) {
-  return {{"theta_i", a.theta_i_deg},
-          {"phi_i", a.phi_i_deg},
-          {"channel", full_name(spec.channels[a.channel])},
-          {"albedo", a.value}};
+  Json json = {{"theta_i", a.theta_i_deg},
+               {"phi_i", a.phi_i_deg},
+               {"of", a.of_eye ? "eye" : "light"},
+               {"channel", full_name(spec.channels[a.channel])},
+               {"albedo", a.value}};
+  for (std::size_t c = 0; c < a.channels.size(); ++c) {
+    json["channels"][full_name(spec.channels[c])] = a.channels[c];
+  }
+  return json;
 }
 
 void print_json(const CheckOptions& options, const TableSpec& spec, const TableCheck& check) {

@@ -96,7 +96,9 @@ void integrate_half_vectors(const Table& table, const Vector3<double>& wi,
   }
 }
 
-void integrate_outgoing(const Table& table, const Vector3<double>& wi, std::span<double> albedo) {
+// Of the light in direction w, or of the eye there.
+void integrate_hemisphere(const Table& table, const Vector3<double>& w, bool of_eye,
+                          std::span<double> albedo) {
   constexpr double kWidest = 2;
   // Whole steps to a cell of the axis, where there is a grid.
   const auto fine = [&](std::size_t axis, double range) {
@@ -109,11 +111,19 @@ void integrate_outgoing(const Table& table, const Vector3<double>& wi, std::span
   for (const Step& theta : fine(2, 90)) {
     const double area = sincosd(theta.angle).sin * theta.width * phis[0].width * kRadian * kRadian;
     for (const Step& phi : phis) {
-      const Vector3<double> wo = direction(theta.angle, phi.angle);
-      if (!table.interpolate({wi, wo}, sample)) continue;
-      for (std::size_t c = 0; c < albedo.size(); ++c) albedo[c] += wo[2] * area * sample[c];
+      const Vector3<double> other = direction(theta.angle, phi.angle);
+      const Directions pair = of_eye ? Directions{other, w} : Directions{w, other};
+      if (!table.interpolate(pair, sample)) continue;
+      for (std::size_t c = 0; c < albedo.size(); ++c) albedo[c] += other[2] * area * sample[c];
     }
   }
+}
+
+// Whether light and eye must be told apart.
+bool knows_order(const TableSpec& spec) {
+  const std::optional<Material>& material = spec.provenance.material;
+  if (material && material->reflectance == Reflectance::kMicrofacet) return false;
+  return !spec.has_grid() || spec.grid().kind == GridKind::kInOut;
 }
 
 // Whether to integrate over wo; else over half vectors.
@@ -145,35 +155,36 @@ std::vector<Albedo> albedo_by_theta(const Table& table, const Workers& workers) 
   if (!over_wo) weighted = with_cosines(table);
   const std::vector<double> thetas = incident_thetas(table.spec());
   const int azimuths = table.spec().isotropic() ? 1 : kAzimuths;
+  const std::size_t roles = knows_order(table.spec()) ? 2 : 1;
+  const std::size_t of_theta = roles * static_cast<std::size_t>(azimuths);
   if (workers.progress != nullptr) {
-    workers.progress->begin("directional albedo",
-                            thetas.size() * static_cast<std::size_t>(azimuths), "directions");
+    workers.progress->begin("directional albedo", thetas.size() * of_theta, "directions");
   }
-  std::vector<Albedo> all(thetas.size() * static_cast<std::size_t>(azimuths));
+  std::vector<Albedo> all(thetas.size() * of_theta);
   with_threads(workers.threads, [&] {
     tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t k) {
-      const auto azimuth = static_cast<double>(k % static_cast<std::size_t>(azimuths));
       Albedo& albedo = all[k];
-      albedo.theta_i_deg = thetas[k / static_cast<std::size_t>(azimuths)];
-      albedo.phi_i_deg = 360.0 * azimuth / azimuths;
-      std::vector<double> channels(table.spec().channels.size());
-      const Vector3<double> wi = direction(albedo.theta_i_deg, albedo.phi_i_deg);
+      albedo.theta_i_deg = thetas[k / of_theta];
+      albedo.of_eye = k % roles == 1;
+      albedo.phi_i_deg = 360.0 * static_cast<double>(k % of_theta / roles) / azimuths;
+      albedo.channels.resize(table.spec().channels.size());
+      const Vector3<double> w = direction(albedo.theta_i_deg, albedo.phi_i_deg);
       if (over_wo) {
-        integrate_outgoing(table, wi, channels);
+        integrate_hemisphere(table, w, albedo.of_eye, albedo.channels);
       } else {
-        integrate_half_vectors(*weighted, wi, channels);
+        integrate_half_vectors(*weighted, w, albedo.channels);
       }
-      const auto largest = std::max_element(channels.begin(), channels.end());
-      albedo.channel = static_cast<std::size_t>(largest - channels.begin());
+      const auto largest = std::max_element(albedo.channels.begin(), albedo.channels.end());
+      albedo.channel = static_cast<std::size_t>(largest - albedo.channels.begin());
       albedo.value = *largest;
       workers.advance(1);
     });
   });
   std::vector<Albedo> by_theta;
   for (std::size_t t = 0; t < thetas.size(); ++t) {
-    const auto first = all.begin() + static_cast<std::ptrdiff_t>(t) * azimuths;
-    Albedo largest = *first;
-    for (const Albedo& albedo : std::span(first, static_cast<std::size_t>(azimuths))) {
+    const std::span<const Albedo> at_theta = std::span(all).subspan(t * of_theta, of_theta);
+    Albedo largest = at_theta.front();
+    for (const Albedo& albedo : at_theta) {
       if (albedo.value > largest.value * (1 + kTie)) largest = albedo;
     }
     by_theta.push_back(largest);
