@@ -318,7 +318,11 @@ Observations observe(const TableSpec& spec, Reflectance reflectance, Workers wor
   if (!spec.has_grid()) {
     PairSites sites(spec, reflectance, out);
     out.value_stride = 1;
-    for (std::size_t k = 0; k < spec.pairs().size(); ++k) {
+    // An irrational step favours no part of an ordered list.
+    const double step =
+        std::max(1.0, static_cast<double>(spec.pairs().size()) / kMostPairs * 1.0000618);
+    for (double next = 0; next < static_cast<double>(spec.pairs().size()); next += step) {
+      const auto k = static_cast<std::size_t>(next);
       sites.add_cell({{spec.pairs()[k], 1.0}}, k * spec.row_values());
     }
     sites.join_equal_x();

@@ -54,6 +54,10 @@ struct Observations {
 /// integrated in closed form). Averaged cells that the horizon cuts are left out.
 inline constexpr int kCellNodes = 3;
 
+/// Of a longer list of pairs, so many are observed, evenly spread over it: all of them would tell
+/// little more, and fill the memory.
+inline constexpr double kMostPairs = 20000;
+
 /// Of a table's samples, for one convention. phi_d up to 180 degrees: the paper's convention is the
 /// mean over both orders of the directions. Averages are those of the microfacet convention: the
 /// paper's diverge (InputError).

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fit/incidence_nodes.h"
 #include "fit/parallel.h"
 #include "model/layers.h"
+#include "tabulate/vectorise.h"
 
 namespace clothbrdf {
 namespace {
@@ -117,6 +119,11 @@ void fill(const Yarn& yarn, Paths paths, const LobeBasis& lobes, const Shares& s
   }
 }
 
+CLOTHBRDF_VECTORISE void add_times(const double* from, double times, std::size_t count,
+                                   double* to) {
+  for (std::size_t i = 0; i < count; ++i) to[i] += times * from[i];
+}
+
 }  // namespace
 
 PathBasis::PathBasis(const Yarn& yarn, Paths paths, const LobeBasis& lobes,
@@ -127,18 +134,33 @@ PathBasis::PathBasis(const Yarn& yarn, Paths paths, const LobeBasis& lobes,
       stride_(padded(lobes.lanes())),
       weights_(cos_theta_d.size() * channels_ * quantities_ * stride_) {
   const Shares shares(yarn, paths, lobes);
-  const auto fill_one = [&](std::size_t k) {
-    const std::size_t x = k / channels_;
-    const std::size_t channel = k % channels_;
-    double* const to = weights_.data() + k * quantities_ * stride_;
-    if (slopes) {
-      fill<PathJet>(yarn, paths, lobes, shares, cos_theta_d[x], channel, tolerance, to, stride_);
-    } else {
-      fill<double>(yarn, paths, lobes, shares, cos_theta_d[x], channel, tolerance, to, stride_);
-    }
+  const auto compute = [&](std::span<const double> cosines, double* weights) {
+    run_parallel(cosines.size() * channels_, workers, [&](std::size_t k) {
+      const double x = cosines[k / channels_];
+      const std::size_t channel = k % channels_;
+      double* const to = weights + k * quantities_ * stride_;
+      if (slopes) {
+        fill<PathJet>(yarn, paths, lobes, shares, x, channel, tolerance, to, stride_);
+      } else {
+        fill<double>(yarn, paths, lobes, shares, x, channel, tolerance, to, stride_);
+      }
+    });
   };
-  const std::size_t count = cos_theta_d.size() * channels_;
-  run_parallel(count, workers, fill_one);
+  if (cos_theta_d.size() <= kMostComputed) {
+    compute(cos_theta_d, weights_.data());
+    return;
+  }
+  const IncidenceNodes octaves(cos_theta_d);
+  const std::size_t row = channels_ * quantities_ * stride_;
+  std::vector<double> at_nodes(octaves.nodes().size() * row);
+  compute(octaves.nodes(), at_nodes.data());
+  run_parallel(cos_theta_d.size(), workers, [&](std::size_t x) {
+    const IncidenceNodes::Place place = octaves.place(cos_theta_d[x]);
+    double* const to = weights_.data() + x * row;
+    for (std::size_t k = 0; k < IncidenceNodes::kOrder; ++k) {
+      add_times(at_nodes.data() + (place.first + k) * row, place.weights[k], row, to);
+    }
+  });
 }
 
 }  // namespace clothbrdf

@@ -16,6 +16,9 @@ class PathBasis {
  public:
   enum Quantity { kValue, kByAbsorption, kByIndex, kByScatter, kQuantities };
 
+  /// Of more cosines than this, weights are interpolated between IncidenceNodes.
+  static constexpr std::size_t kMostComputed = 250;
+
   /// Walks end early once what is left changes no sum by more than `tolerance`, relative.
   PathBasis(const Yarn& yarn, Paths paths, const LobeBasis& lobes,
             std::span<const double> cos_theta_d, double tolerance, bool slopes, Workers workers);
