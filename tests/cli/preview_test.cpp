@@ -256,11 +256,6 @@ TEST_CASE("preview refuses what it cannot draw in one line and leaves nothing be
     const std::string file = (inputs / name).string();
     CHECK(why_file(file, {}).starts_with("clothbrdf: " + file + ": "));
   }
-  Material spectral = read_material(kSilk);
-  spectral.wavelengths_nm = {450, 550, 650};
-  write_file(inputs / "spectral.json", material_to_json(spectral));
-  CHECK_THAT(why_file((inputs / "spectral.json").string(), {}),
-             ContainsSubstring("spectral.json: wavelengths_nm has 3 values; a picture needs"));
   write_table(preset_table("silk", inout(2, 4, 2, 4)), inputs / "t.exr");
   for (const char* show : {"components", "all"}) {
     CHECK_THAT(why_file((inputs / "t.exr").string(), {"--show", show}),

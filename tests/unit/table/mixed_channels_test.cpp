@@ -176,10 +176,12 @@ TEST_CASE("marks of cells not measured survive, colours outside Rec. 709 end at 
   CHECK(rgb(-1, -1, -1) == unmeasured);
   CHECK(rgb(0.5, -1, 0.5) == unmeasured);
   CHECK(std::isnan(rgb(0.5, nan, 0.5)[1]));
-  const std::vector<double> red = rgb(0, 0, 1);
-  CHECK(red[0] > 0.5);
-  CHECK(rgb_weights(std::vector<double>{450, 550, 650})[1][2] < 0);
-  CHECK(red[1] == 0);
+  // Light from 580 nm on is redder than any red of Rec. 709: its blue would be -0.03.
+  const std::vector<double> red =
+      row_of(*to_rgb(one_pair({"500nm", "575nm", "580nm", "650nm"}, {0, 0, 1, 1})));
+  CHECK(rgb_weights(std::vector<double>{500, 575, 580, 650})[2][2] < 0);
+  CHECK(red[0] > 1);
+  CHECK(red[2] == 0);
   CHECK(rgb(0, 0, 0) == std::vector<double>(3, 0));
 }
 
