@@ -98,7 +98,7 @@ std::array<double, 2> chromaticity_of_d65() {
 }  // namespace
 
 TEST_CASE("the observer's tables have the standard's sums, peak and white") {
-  CHECK(kObserverFirst_nm + kObserverStep_nm * (kObserver.size() - 1) == 780);
+  CHECK(observer_wavelength_nm(kObserver.size() - 1) == 780);
   CHECK(kObserver[40].d65 == 100);  // 560 nm
   CHECK(kObserver[39].y_bar == 1);  // 555 nm
   // The observer sees equal energy as grey: all three functions enclose the same area.
