@@ -7,12 +7,32 @@
 #include <vector>
 
 #include "support/errors.h"
+#include "table/spectrum.h"
 #include "tabulate/batch.h"
 
 namespace clothbrdf {
 namespace {
 
 constexpr const char* kRgbNames[] = {"R", "G", "B"};
+
+// Values at pairs of directions, values[channel][pair].
+std::vector<double> channel_values(const BatchEvaluator<double>& evaluator, std::size_t channels,
+                                   std::span<const Directions> directions) {
+  const std::size_t count = directions.size();
+  std::vector<double> arrays(6 * count);
+  const auto array = [&](std::size_t k) { return arrays.data() + k * count; };
+  for (std::size_t p = 0; p < count; ++p) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      array(k)[p] = directions[p].wi[k];
+      array(3 + k)[p] = directions[p].wo[k];
+    }
+  }
+  std::vector<double> values(channels * count);
+  std::vector<double*> to(channels);
+  for (std::size_t c = 0; c < channels; ++c) to[c] = values.data() + c * count;
+  evaluator.evaluate({{array(0), array(1), array(2)}, {array(3), array(4), array(5)}, count}, to);
+  return values;
+}
 
 class MaterialCloth final : public Cloth {
  public:
@@ -22,29 +42,40 @@ class MaterialCloth final : public Cloth {
   bool has(Part /*all of them*/) const override { return true; }
 
   Shading shading(Part part) const override {
-    std::vector<Channel> channels;
-    for (std::size_t c = 0; c < 3; ++c) channels.push_back({kRgbNames[c], part, c});
+    std::vector<Channel> channels = material_channels(model_->material(), false);
+    for (Channel& channel : channels) channel.part = part;
     const auto evaluator =
         std::make_shared<const BatchEvaluator<double>>(*model_, channels, workers_);
+    if (!model_->material().wavelengths_nm.empty()) return mixed(evaluator);
     return Shading(
         [model = model_, evaluator](std::span<const Directions> directions, std::span<Rgb> f) {
           const std::size_t count = directions.size();
-          std::vector<double> arrays(9 * count);
-          const auto array = [&](std::size_t k) { return arrays.data() + k * count; };
+          const std::vector<double> values = channel_values(*evaluator, 3, directions);
           for (std::size_t p = 0; p < count; ++p) {
-            for (std::size_t k = 0; k < 3; ++k) {
-              array(k)[p] = directions[p].wi[k];
-              array(3 + k)[p] = directions[p].wo[k];
-            }
+            f[p] = {values[p], values[count + p], values[2 * count + p]};
           }
-          const std::array<double*, 3> to = {array(6), array(7), array(8)};
-          evaluator->evaluate(
-              {{array(0), array(1), array(2)}, {array(3), array(4), array(5)}, count}, to);
-          for (std::size_t p = 0; p < count; ++p) f[p] = {to[0][p], to[1][p], to[2][p]};
         });
   }
 
  private:
+  // Of a spectral material: R, G and B, below 0 where Rec. 709 cannot show the colour.
+  Shading mixed(const std::shared_ptr<const BatchEvaluator<double>>& evaluator) const {
+    return Shading(
+        [model = model_, evaluator, weights = rgb_weights(model_->material().wavelengths_nm)](
+            std::span<const Directions> directions, std::span<Rgb> f) {
+          const std::size_t count = directions.size();
+          const std::vector<double> values =
+              channel_values(*evaluator, model->channel_count(), directions);
+          std::fill(f.begin(), f.end(), Rgb{});
+          for (std::size_t c = 0; c < 3; ++c) {
+            for (std::size_t k = 0; k < weights[c].size(); ++k) {
+              for (std::size_t p = 0; p < count; ++p)
+                f[p][c] += weights[c][k] * values[k * count + p];
+            }
+          }
+        });
+  }
+
   std::shared_ptr<const ClothModel<double>> model_;
   Workers workers_;
 };
@@ -88,14 +119,9 @@ class TableCloth final : public Cloth {
 
 std::unique_ptr<Cloth> material_cloth(const Material& material, const std::string& name,
                                       const Workers& workers) {
-  if (!material.wavelengths_nm.empty()) {
-    throw InputError(name + ": wavelengths_nm has " +
-                     std::to_string(material.wavelengths_nm.size()) +
-                     " values; a picture needs absorption of R, G and B, without wavelengths_nm");
-  }
-  if (material.channel_count() != 3) {
+  if (material.wavelengths_nm.empty() && material.channel_count() != 3) {
     throw InputError(name + ": absorption has " + std::to_string(material.channel_count()) +
-                     " values; a picture needs R, G and B");
+                     " values; a picture needs R, G and B, or wavelengths_nm");
   }
   return std::make_unique<MaterialCloth>(material, workers);
 }

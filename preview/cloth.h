@@ -46,8 +46,9 @@ class Cloth {
   virtual Shading shading(Part part) const = 0;
 };
 
-/// Evaluated as the model does, to rounding. Throws InputError, starting with `name`, for a
-/// material that is not of R, G and B.
+/// Evaluated as the model does, to rounding; a material of wavelengths then by rgb_weights. Throws
+/// InputError, starting with `name`, for a material of other channels than R, G and B or
+/// wavelengths.
 std::unique_ptr<Cloth> material_cloth(const Material& material, const std::string& name,
                                       const Workers& workers = 1);
 

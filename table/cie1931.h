@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 
 namespace clothbrdf {
 
@@ -11,9 +12,6 @@ struct ObserverRow {
   double z_bar;
   double d65;  ///< relative spectral power of the standard illuminant D65, 100 at 560 nm
 };
-
-inline constexpr double kObserverFirst_nm = 360;
-inline constexpr double kObserverStep_nm = 5;
 
 /// From 360 to 780 nm by 5 nm, from CIE 018:2019 (the observer also ISO/CIE 11664-1, D65 also
 /// ISO/CIE 11664-2). What the observer sees beyond 780 nm is less than 1e-5 of the whole.
@@ -104,5 +102,10 @@ inline constexpr std::array<ObserverRow, 85> kObserver = {{
     {5.870652e-05, 2.12e-05, 0.0, 65.0941},
     {4.150994e-05, 1.499e-05, 0.0, 63.3828},
 }};
+
+/// Of a row, nm.
+constexpr double observer_wavelength_nm(std::size_t row) {
+  return 360 + 5 * static_cast<double>(row);
+}
 
 }  // namespace clothbrdf

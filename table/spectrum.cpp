@@ -46,8 +46,7 @@ ChannelMatrix rgb_weights(std::span<const double> wavelengths_nm) {
   ChannelMatrix weights(3, std::vector<double>(wavelengths_nm.size()));
   for (std::size_t k = 0; k < kObserver.size(); ++k) {
     const ObserverRow& row = kObserver[k];
-    const Share share =
-        share_at(wavelengths_nm, kObserverFirst_nm + kObserverStep_nm * static_cast<double>(k));
+    const Share share = share_at(wavelengths_nm, observer_wavelength_nm(k));
     for (std::size_t c = 0; c < 3; ++c) {
       const auto& xyz = kRgbOfXyz[c];
       const double seen = row.d65 * (xyz[0] * row.x_bar + xyz[1] * row.y_bar + xyz[2] * row.z_bar);

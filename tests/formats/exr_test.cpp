@@ -13,6 +13,7 @@
 
 #include "formats/table_metadata.h"
 #include "support/errors.h"
+#include "table/mixed_channels.h"
 #include "tests/catch.h"
 #include "tests/support/make_table.h"
 #include "tests/support/random_inputs.h"
@@ -48,6 +49,15 @@ TEST_CASE("an EXR file alone rebuilds its table: grid, channels, provenance and 
       }
     }
   }
+}
+
+TEST_CASE("mixed channels, which are no one absorption value, come back as such") {
+  const TemporaryFolder folder;
+  const Table silk = preset_table("silk", inout(2, 4, 2, 4));
+  const Table spectrum = collect(*to_spectrum(silk), 1);
+  REQUIRE(spectrum.spec().channels[3].colour == kNoColour);
+  write_table(spectrum, folder / "t.exr");
+  CHECK(read_exr(folder / "t.exr").spec() == spectrum.spec());
 }
 
 TEST_CASE("rows of the picture are the first pair of axes, columns the second") {

@@ -5,9 +5,12 @@
 #include <iostream>
 
 #include "model/reflectance.h"
+#include "preview/sheet.h"
 #include "support/errors.h"
+#include "table/spectrum.h"
 #include "tests/catch.h"
 #include "tests/support/make_table.h"
+#include "tests/support/part_of.h"
 #include "tests/support/random_inputs.h"
 
 namespace clothbrdf::test {
@@ -41,17 +44,15 @@ Directions directions(const DirectionPair& pair) {
   return {direction(pair.theta_i, pair.phi_i), direction(pair.theta_o, pair.phi_o)};
 }
 
-Rgb expected(const ClothModel<double>& model, const Directions& d, Part part) {
+double channel_value(const ClothModel<double>& model, const Directions& d, Part part,
+                     std::size_t c) {
   const Components f = model.evaluate(pair_geometry(d.wi, d.wo, model.material().rotation_deg));
+  return part_of(f, {"", part, c});
+}
+
+Rgb expected(const ClothModel<double>& model, const Directions& d, Part part) {
   Rgb values{};
-  for (std::size_t c = 0; c < 3; ++c) {
-    switch (part) {
-      case Part::kTotal: values[c] = f.total(c); break;
-      case Part::kSpecular: values[c] = f.specular[c]; break;
-      case Part::kInternal: values[c] = f.internal[c]; break;
-      case Part::kDiffuse: values[c] = f.diffuse[c]; break;
-    }
-  }
+  for (std::size_t c = 0; c < 3; ++c) values[c] = channel_value(model, d, part, c);
   return values;
 }
 
@@ -160,17 +161,83 @@ TEST_CASE("turned turns the weave counter-clockwise, as rotation_deg does") {
   CHECK(other_way > 0.1);
 }
 
-TEST_CASE(
-    "materials that are not of R, G and B are refused in one line that starts with the name") {
+TEST_CASE("a material of wavelengths is shaded by its channels' RGB, part by part") {
+  const std::uint64_t seed = seed_from_environment();
+  RandomInputs random(seed);
+  MaterialRanges ranges;
+  ranges.lowest_axis = 0.1;
+  double worst = 0;
+  double lit = 0;
+  for (int n = 0; n < 6; ++n) {
+    const std::size_t channels = n == 0 ? 3 : static_cast<std::size_t>(random.integer(1, 20));
+    Material material = random.material(ranges, channels);
+    for (std::size_t k = 0; k < channels; ++k) {
+      material.wavelengths_nm.push_back(400 + 17.5 * static_cast<double>(k));
+    }
+    const ChannelMatrix weights = rgb_weights(material.wavelengths_nm);
+    const ClothModel<double> model(material);
+    const auto cloth = material_cloth(material, "m");
+    std::vector<Directions> pairs;
+    for (int k = 0; k < 40; ++k) pairs.push_back(directions(random.pair()));
+    for (const Part part : kParts) {
+      const Shading shading = cloth->shading(part);
+      std::vector<Rgb> f(pairs.size(), Rgb{7, 7, 7});
+      shading(pairs, f);
+      for (std::size_t p = 0; p < pairs.size(); ++p) {
+        for (std::size_t c = 0; c < 3; ++c) {
+          double exact = 0;
+          double size = 0;  // weights have both signs
+          for (std::size_t k = 0; k < channels; ++k) {
+            const double value = channel_value(model, pairs[p], part, k);
+            exact += weights[c][k] * value;
+            size += std::abs(weights[c][k]) * value;
+          }
+          lit += size;
+          const double error = size == 0 ? std::abs(f[p][c]) : std::abs(f[p][c] - exact) / size;
+          worst = std::max(worst, error / condition(material, pairs[p]));
+        }
+      }
+    }
+  }
+  std::cout << "shading of spectral materials: worst relative error over condition number " << worst
+            << " (seed " << seed << ")\n";
+  CHECK(worst <= kSameToRounding);
+  CHECK(lit > 1);
+}
+
+TEST_CASE("a grey material of wavelengths draws the sheet of the grey RGB material") {
+  Material rgb = read_material(preset("cotton"));
+  rgb.warp.absorption = {0.3, 0.3, 0.3};
+  rgb.weft.absorption = {0.6, 0.6, 0.6};
+  Material spectral = rgb;
+  spectral.wavelengths_nm = {420, 500, 580, 660, 700};
+  spectral.warp.absorption.assign(5, 0.3);
+  spectral.weft.absorption.assign(5, 0.6);
+  const SheetView view{{20, 30}, {10, 190}, 64, 0};
+  const auto draw = [&](const Material& material) {
+    return render_sheet(material_cloth(material, "m")->shading(Part::kTotal), view, 1);
+  };
+  const Image expected = draw(rgb);
+  const Image image = draw(spectral);
+  REQUIRE(image.pixels.size() == expected.pixels.size());
+  double worst = 0;
+  double brightest = 0;
+  for (std::size_t k = 0; k < image.pixels.size(); ++k) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      worst = std::max(worst, std::abs(image.pixels[k][c] - expected.pixels[k][c]));
+      brightest = std::max(brightest, expected.pixels[k][c]);
+    }
+  }
+  std::cout << "grey spectral sheet: off by " << worst << " of " << brightest << '\n';
+  CHECK(brightest > 0.1);
+  CHECK(worst <= kSameToRounding * brightest);
+}
+
+TEST_CASE("materials without wavelengths that are not of R, G and B are refused in one line") {
   Material material = read_material(preset("silk"));
-  material.wavelengths_nm = {450, 550, 650};
-  CHECK(refusal([&] { material_cloth(material, "s.json"); }) ==
-        "s.json: wavelengths_nm has 3 values; a picture needs absorption of R, G and B, without "
-        "wavelengths_nm");
-  material.wavelengths_nm.clear();
   material.warp.absorption = material.weft.absorption = {0.1, 0.2};
   CHECK(refusal([&] { material_cloth(material, "s.json"); }) ==
-        "s.json: absorption has 2 values; a picture needs R, G and B");
+        "s.json: absorption has 2 values; a picture needs R, G and B, or wavelengths_nm");
 }
 
 TEST_CASE("tables without channels R, G and B or without a grid are refused in one line") {
