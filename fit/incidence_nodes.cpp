@@ -20,13 +20,25 @@ double width_of(int octave) {
   return (octave == kLastOctave ? kEnd : 2 * start_of(octave)) - start_of(octave);
 }
 
-double angle(std::size_t k) {
-  return std::numbers::pi * (static_cast<double>(k) + 0.5) /
-         static_cast<double>(IncidenceNodes::kOrder);
-}
+// Chebyshev points of the first kind in an octave, 0 to 1, and their barycentric weights.
+struct Points {
+  std::array<double, IncidenceNodes::kOrder> node{};
+  std::array<double, IncidenceNodes::kOrder> weight{};
 
-// In an octave, 0 to 1.
-double node(std::size_t k) { return (1 - std::cos(angle(k))) / 2; }
+  Points() {
+    for (std::size_t k = 0; k < node.size(); ++k) {
+      const double angle =
+          std::numbers::pi * (static_cast<double>(k) + 0.5) / static_cast<double>(node.size());
+      node[k] = (1 - std::cos(angle)) / 2;
+      weight[k] = (k % 2 == 0 ? 1 : -1) * std::sin(angle);
+    }
+  }
+};
+
+const Points& points() {
+  static const Points kPoints;
+  return kPoints;
+}
 
 }  // namespace
 
@@ -35,7 +47,7 @@ IncidenceNodes::IncidenceNodes(std::span<const double> cos_theta_d) {
   first_octave_ = octave_of(*lowest);
   for (int octave = first_octave_; octave <= octave_of(*highest); ++octave) {
     for (std::size_t k = 0; k < kOrder; ++k) {
-      nodes_.push_back(start_of(octave) + width_of(octave) * node(k) - kShift);
+      nodes_.push_back(start_of(octave) + width_of(octave) * points().node[k] - kShift);
     }
   }
 }
@@ -44,16 +56,15 @@ IncidenceNodes::Place IncidenceNodes::place(double cos_theta_d) const {
   const int octave = octave_of(cos_theta_d);
   const double share = (cos_theta_d + kShift - start_of(octave)) / width_of(octave);
   Place place{static_cast<std::size_t>(octave - first_octave_) * kOrder, {}};
-  // Barycentric Lagrange at Chebyshev points of the first kind.
   double all = 0;
   for (std::size_t k = 0; k < kOrder; ++k) {
-    const double off = share - node(k);
+    const double off = share - points().node[k];
     if (off == 0) {
       place.weights = {};
       place.weights[k] = 1;
       return place;
     }
-    place.weights[k] = (k % 2 == 0 ? 1 : -1) * std::sin(angle(k)) / off;
+    place.weights[k] = points().weight[k] / off;
     all += place.weights[k];
   }
   for (double& weight : place.weights) weight /= all;

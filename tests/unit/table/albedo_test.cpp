@@ -125,7 +125,7 @@ TEST_CASE("an albedo above 1 is found where it is") {
 
 TEST_CASE("beyond 85 degrees no albedo is the largest") {
   TableCheck check;
-  check.albedo = {{85, 0, 0, 0.5}, {89, 0, 0, 7}};
+  check.albedo = {{.theta_i_deg = 85, .value = 0.5}, {.theta_i_deg = 89, .value = 7}};
   CHECK(check.largest_albedo()->value == 0.5);
   check.albedo.clear();
   CHECK(!check.largest_albedo());
