@@ -11,6 +11,7 @@
 #include "formats/square.h"
 #include "formats/warp.h"
 #include "support/threads.h"
+#include "table/spectrum.h"
 
 namespace clothbrdf {
 namespace {
@@ -21,11 +22,17 @@ double dot(const Vector3<double>& a, const Vector3<double>& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-// Rec. 709; for wavelengths a plain mean.
+// Y of the channels.
 std::vector<double> luminance_weights(const RglLayout& layout) {
-  if (layout.wavelengths_nm.empty()) return {0.2126, 0.7152, 0.0722};
-  const std::size_t count = layout.wavelengths_nm.size();
-  return std::vector<double>(count, 1.0 / static_cast<double>(count));
+  const auto& y_of_rgb = kXyzOfRgb[1];
+  if (layout.wavelengths_nm.empty()) return {y_of_rgb.begin(), y_of_rgb.end()};
+  const std::vector<double> wavelengths(layout.wavelengths_nm.begin(), layout.wavelengths_nm.end());
+  const ChannelMatrix rgb = rgb_weights(wavelengths);
+  std::vector<double> weights(wavelengths.size(), 0.0);
+  for (std::size_t c = 0; c < weights.size(); ++c) {
+    for (std::size_t k = 0; k < y_of_rgb.size(); ++k) weights[c] += y_of_rgb[k] * rgb[k][c];
+  }
+  return weights;
 }
 
 double luminance(std::span<const double> weights, std::span<const double> f) {

@@ -16,9 +16,9 @@ class ColumnWriter {
  public:
   ColumnWriter(const RglLayout& layout, AtomicFile& file) : layout_(layout), file_(file) {}
 
-  template <class T>
-  void whole(const std::string& field, std::span<const T> values) {
-    file_.write_at(layout_.field(field).offset, std::as_bytes(values));
+  template <class Values>
+  void whole(const std::string& field, const Values& values) {
+    file_.write_at(layout_.field(field).offset, std::as_bytes(std::span(values)));
   }
   void column(std::size_t phi, const RglColumn& column, std::span<const float> values) {
     part("vndf", phi, column.densities);
@@ -53,13 +53,13 @@ void write_rgl(const Producer& producer, const RglLayout& layout, AtomicFile& fi
   const RglSlices slices(producer, layout, workers);
   ColumnWriter out(layout, file);
   constexpr std::array<std::uint8_t, 1> kJacobian = {1};
-  out.whole("description", std::span<const char>(layout.description));
-  out.whole("jacobian", std::span(kJacobian));
-  out.whole("phi_i", std::span(layout.phi_i));
-  out.whole("theta_i", std::span(layout.theta_i));
-  out.whole("ndf", std::span(slices.ndf()));
-  out.whole("sigma", std::span(slices.sigma()));
-  if (!layout.wavelengths_nm.empty()) out.whole("wavelengths", std::span(layout.wavelengths_nm));
+  out.whole("description", layout.description);
+  out.whole("jacobian", kJacobian);
+  out.whole("phi_i", layout.phi_i);
+  out.whole("theta_i", layout.theta_i);
+  out.whole("ndf", slices.ndf());
+  out.whole("sigma", slices.sigma());
+  if (!layout.wavelengths_nm.empty()) out.whole("wavelengths", layout.wavelengths_nm);
 
   const std::size_t column_cells = layout.sizes.theta * layout.sizes.slice_cells();
   if (layout.sizes.phi == 1) {
