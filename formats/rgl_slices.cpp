@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -46,6 +47,30 @@ double density_at(const Vector3<double>& eye, double x, const Vector3<double>& m
   return (0.1 + std::pow(facing, 0.6)) * std::pow(x + 0.02, 0.2);
 }
 
+// The eyes of the slices that share an interval with this one and see less: farther down, and to
+// both sides.
+std::array<Vector3<double>, 3> neighbours_of(const RglLayout& layout, std::size_t phi,
+                                             std::size_t theta) {
+  const RglSizes& s = layout.sizes;
+  const double theta_eye = double{layout.theta_i[theta]};
+  const double theta_next = double{layout.theta_i[std::min(theta + 1, s.theta - 1)]};
+  const double phi_eye = double{layout.phi_i[phi]};
+  const double step = s.phi == 1 ? 0 : 2 * std::numbers::pi / static_cast<double>(s.phi - 1);
+  return {direction_at(theta_next, phi_eye), direction_at(theta_eye, phi_eye + step),
+          direction_at(theta_eye, phi_eye - step)};
+}
+
+// The height above the horizon that a light is sampled as if it had. Between two slices readers mix
+// their samples, and what one slice sees just above the horizon is below it for the other: lost
+// samples. Where a neighbour sees the light below the horizon, less is asked for; the factors keep
+// the lost samples near 1 % at theta = 80 degrees and weights below six times their mean (silk,
+// 5 MB).
+double sampled_cosine(double light_cosine, double lowest_cosine) {
+  constexpr double kLeast = 0.15;
+  constexpr double kMargin = 2;
+  return std::max(kLeast * light_cosine, light_cosine + kMargin * std::min(0.0, lowest_cosine));
+}
+
 }  // namespace
 
 // The nodes of a slice.
@@ -62,9 +87,12 @@ RglSlices::RglSlices(const Producer& producer, const RglLayout& layout, Workers 
       luminance_weights_(luminance_weights(layout)),
       distribution_(rgl_distribution(producer, luminance_weights_, workers)) {}
 
-RglSlices::Nodes RglSlices::place_nodes(const Vector3<double>& eye, double theta,
+RglSlices::Nodes RglSlices::place_nodes(std::size_t phi, std::size_t theta,
                                         std::span<float> densities) const {
   const RglSizes& s = layout_.sizes;
+  const double theta_eye = double{layout_.theta_i[theta]};
+  const Vector3<double> eye = direction_at(theta_eye, double{layout_.phi_i[phi]});
+  const auto neighbours = neighbours_of(layout_, phi, theta);
   for (std::size_t k = 0; k < densities.size(); ++k) {
     const SquarePoint u_m = node_of(k, s.density);
     const Vector3<double> m = direction_at(square_theta(u_m.x), square_phi(u_m.y));
@@ -73,7 +101,7 @@ RglSlices::Nodes RglSlices::place_nodes(const Vector3<double>& eye, double theta
   const Warp warp(s.density, s.density, densities);
   const SliceBlend slice = only_slice(0);
   const double area =
-      bilinear(distribution_.sigma, kSigmaRows, kSigmaColumns, {theta_to_square(theta), 0});
+      bilinear(distribution_.sigma, kSigmaRows, kSigmaColumns, {theta_to_square(theta_eye), 0});
   Nodes nodes{std::vector<Directions>(s.slice_cells()), std::vector<double>(s.slice_cells()),
               std::vector<double>(s.slice_cells())};
   for (std::size_t k = 0; k < s.slice_cells(); ++k) {
@@ -90,8 +118,12 @@ RglSlices::Nodes RglSlices::place_nodes(const Vector3<double>& eye, double theta
     // The square shrinks to nothing at the pole, but not next to it.
     constexpr double kLeastX = 0.01;
     const double x = std::max(u_m.x, kLeastX);
-    nodes.solid_angles[k] = light_cosine * std::max(0.0, cosine) * 8 * std::numbers::pi *
-                            std::numbers::pi * x * std::sin(square_theta(x)) /
+    double lowest = light_cosine;
+    for (const Vector3<double>& other : neighbours) {
+      lowest = std::min(lowest, 2 * dot(other, m) * m[2] - other[2]);
+    }
+    nodes.solid_angles[k] = sampled_cosine(light_cosine, lowest) * std::max(0.0, cosine) * 8 *
+                            std::numbers::pi * std::numbers::pi * x * std::sin(square_theta(x)) /
                             warp.density(u_m, slice);
   }
   return nodes;
@@ -114,12 +146,10 @@ void RglSlices::fill_luminance(const Nodes& nodes, std::span<const double> f,
 
 void RglSlices::fill_slice(std::size_t phi, std::size_t theta, RglColumn& column) const {
   const RglSizes& s = layout_.sizes;
-  const double theta_eye = double{layout_.theta_i[theta]};
-  const Vector3<double> eye = direction_at(theta_eye, double{layout_.phi_i[phi]});
   const std::size_t density_cells = s.density * s.density;
   const std::size_t cells = s.slice_cells();
   const Nodes nodes = place_nodes(
-      eye, theta_eye, std::span(column.densities).subspan(theta * density_cells, density_cells));
+      phi, theta, std::span(column.densities).subspan(theta * density_cells, density_cells));
   std::vector<double> f(cells * s.channels);
   producer_.fill_pairs(nodes.pairs, f);
   fill_luminance(nodes, f, std::span(column.luminance).subspan(theta * cells, cells));

@@ -30,7 +30,7 @@ class RglSlices {
 
  private:
   struct Nodes;
-  Nodes place_nodes(const Vector3<double>& eye, double theta, std::span<float> densities) const;
+  Nodes place_nodes(std::size_t phi, std::size_t theta, std::span<float> densities) const;
   void fill_slice(std::size_t phi, std::size_t theta, RglColumn& column) const;
   void fill_luminance(const Nodes& nodes, std::span<const double> f,
                       std::span<float> luminance) const;
