@@ -56,6 +56,7 @@ Format rgl_format() {
             return spectral(options) ? Colours::kSpectrum : Colours::kRgb;
           },
       .keeps_description = true,
+      .averages = "",
       .precision =
           [](const WriteOptions&) {
             return StoredPrecision{0x1p-24, 0x1p-149};

@@ -48,12 +48,13 @@ double density_at(const Vector3<double>& eye, double x, const Vector3<double>& m
 }
 
 // The eyes of the slices that share an interval with this one and see less: farther down, and to
-// both sides.
+// both sides. At the pole all azimuths are one eye, and none has neighbours of its own.
 std::array<Vector3<double>, 3> neighbours_of(const RglLayout& layout, std::size_t phi,
                                              std::size_t theta) {
   const RglSizes& s = layout.sizes;
   const double theta_eye = double{layout.theta_i[theta]};
-  const double theta_next = double{layout.theta_i[std::min(theta + 1, s.theta - 1)]};
+  const double theta_next =
+      double{layout.theta_i[theta == 0 ? 0 : std::min(theta + 1, s.theta - 1)]};
   const double phi_eye = double{layout.phi_i[phi]};
   const double step = s.phi == 1 ? 0 : 2 * std::numbers::pi / static_cast<double>(s.phi - 1);
   return {direction_at(theta_next, phi_eye), direction_at(theta_eye, phi_eye + step),
