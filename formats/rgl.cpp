@@ -27,13 +27,15 @@ void check_rgl(const TableSpec& spec, const WriteOptions& options, const std::st
     throw InputError(name + ": " + spec.description() +
                      " is not allowed: RGL files have nodes of their own; leave out --grid");
   }
-  double before = 0;
+  // As the file holds them: in floats.
+  float before = 0;
   for (const Channel& channel : spec.channels) {
     if (!spectral(options)) break;
-    const double wavelength = named_wavelength(channel.name).value();
+    const auto wavelength = static_cast<float>(named_wavelength(channel.name).value());
     if (!(wavelength > before)) {
-      throw InputError(name + ": the wavelength " + number_text(wavelength) + " nm after " +
-                       number_text(before) + " is not allowed: RGL files hold ascending ones");
+      throw InputError(name + ": the wavelength " + number_text(double{wavelength}) + " nm after " +
+                       number_text(double{before}) +
+                       " is not allowed: RGL files hold ascending ones");
     }
     before = wavelength;
   }
@@ -54,6 +56,7 @@ Format rgl_format() {
             return spectral(options) ? Colours::kSpectrum : Colours::kRgb;
           },
       .keeps_description = true,
+      .averages = "",
       .precision =
           [](const WriteOptions&) {
             return StoredPrecision{0x1p-24, 0x1p-149};

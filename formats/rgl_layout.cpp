@@ -65,11 +65,11 @@ TensorHeader header_of(const RglSizes& s, const std::string& description, bool s
   return tensor_header(std::move(fields));
 }
 
-// The nodes along the other axes for so many along each side of a slice's square.
-RglSizes sizes_for(std::size_t square, std::size_t phi, std::size_t channels) {
-  const std::size_t around = phi == 0 ? square : phi;
-  return {.phi = around,
-          .theta = std::max<std::size_t>(3, (square + 1) / 2),
+// The nodes along the other axes for so many along each side of a slice: what gave the least error
+// for a number of bytes, over presets.
+RglSizes sizes_for(std::size_t square, bool isotropic, std::size_t channels) {
+  return {.phi = isotropic ? 1 : square - 1,
+          .theta = std::max<std::size_t>(3, square / 2),
           .square = square,
           .density = std::max<std::size_t>(4, (square * 2 + 2) / 5),
           .channels = channels};
@@ -100,22 +100,22 @@ RglLayout rgl_layout(const TableSpec& spec, bool spectral, std::uint64_t bytes,
     return header_of(sizes, layout.description, spectral).file_size;
   };
   const std::size_t channels = spec.channels.size();
-  const std::size_t phi = spec.isotropic() ? 1 : 0;
-  const std::uint64_t most = std::min(bytes, phi == 1 ? kMostIsotropicBytes : kMostBytes);
-  RglSizes best = sizes_for(kLeastSquare, phi, channels);
+  const bool isotropic = spec.isotropic();
+  const std::uint64_t most = std::min(bytes, isotropic ? kMostIsotropicBytes : kMostBytes);
+  RglSizes best = sizes_for(kLeastSquare, isotropic, channels);
   if (bytes_of(best) > most) {
     throw InputError(name + ": --size " + std::to_string(bytes) + " is too small: the smallest " +
                      "file of this table has " + std::to_string(bytes_of(best)) + " bytes");
   }
-  for (std::size_t square = kLeastSquare; bytes_of(sizes_for(square, phi, channels)) <= most;
+  for (std::size_t square = kLeastSquare; bytes_of(sizes_for(square, isotropic, channels)) <= most;
        ++square) {
-    best = sizes_for(square, phi, channels);
+    best = sizes_for(square, isotropic, channels);
   }
   // What is left goes to one axis at a time.
   for (std::size_t RglSizes::*const axis : {&RglSizes::theta, &RglSizes::square, &RglSizes::phi}) {
     RglSizes finer = best;
     finer.*axis += 1;
-    if ((axis != &RglSizes::phi || phi == 0) && bytes_of(finer) <= most) best = finer;
+    if ((axis != &RglSizes::phi || !isotropic) && bytes_of(finer) <= most) best = finer;
   }
   layout.sizes = best;
   layout.phi_i = phi_nodes(best.phi);

@@ -1,10 +1,13 @@
 #include "formats/rgl_reader.h"
 
-#include <cmath>
+#include <algorithm>
+#include <array>
+#include <charconv>
 #include <cstdint>
 #include <memory>
 #include <numbers>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,7 +15,6 @@
 #include "formats/rgl_tensors.h"
 #include "formats/square.h"
 #include "formats/table_metadata.h"
-#include "model/parameters.h"
 #include "support/errors.h"
 
 namespace clothbrdf {
@@ -29,7 +31,12 @@ std::vector<Channel> channels_of(const RglTensors& tensors) {
   if (tensors.wavelengths_nm().empty()) return rgb_channels();
   std::vector<Channel> channels;
   for (const float wavelength : tensors.wavelengths_nm()) {
-    channels.push_back({wavelength_name(double{wavelength}), Part::kTotal, channels.size()});
+    // The shortest number that is this float: 406.67, not 406.670013.
+    std::array<char, 32> text{};
+    const auto end = std::to_chars(text.data(), text.data() + text.size(), wavelength).ptr;
+    double shortest = 0;
+    std::from_chars(text.data(), end, shortest);
+    channels.push_back({wavelength_name(shortest), Part::kTotal, channels.size()});
   }
   return channels;
 }
@@ -40,6 +47,17 @@ std::optional<TableSpec> described(const TensorFile& file) {
   const std::size_t line = text.find("\n{");
   if (line == std::string::npos || text.find(", by clothbrdf ") >= line) return std::nullopt;
   return parse_table_metadata(text.substr(line + 1), file.name() + ": field 'description'");
+}
+
+// Whether a file can have come from a table of these channels.
+bool same_channels(std::span<const Channel> of_table, std::span<const Channel> of_file) {
+  const auto same = [](const Channel& a, const Channel& b) {
+    const std::optional<double> nm_a = named_wavelength(a.name);
+    const std::optional<double> nm_b = named_wavelength(b.name);
+    if (!nm_a || !nm_b) return a == b;
+    return a.part == b.part && static_cast<float>(*nm_a) == static_cast<float>(*nm_b);
+  };
+  return std::equal(of_table.begin(), of_table.end(), of_file.begin(), of_file.end(), same);
 }
 
 // Packed bits, the first in the highest place; 1 where a node was measured.
@@ -79,10 +97,11 @@ Table read_rgl(const std::filesystem::path& path) {
   }
   TableSpec spec{std::move(samples), channels_of(*tensors), {}, {}};
   if (const std::optional<TableSpec> from = described(file)) {
-    if (from->channels != spec.channels || from->isotropic() != spec.isotropic()) {
+    if (!same_channels(from->channels, spec.channels) || from->isotropic() != spec.isotropic()) {
       throw InputError(file.name() +
                        ": field 'description': its channels are not those of the values");
     }
+    spec.channels = from->channels;
     spec.provenance = from->provenance;
   }
   constexpr StoredPrecision kFloats{0x1p-24, 0x1p-149};

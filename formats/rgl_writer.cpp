@@ -57,8 +57,8 @@ void write_rgl(const Producer& producer, const RglLayout& layout, AtomicFile& fi
   out.whole("jacobian", kJacobian);
   out.whole("phi_i", layout.phi_i);
   out.whole("theta_i", layout.theta_i);
-  out.whole("ndf", slices.ndf());
-  out.whole("sigma", slices.sigma());
+  out.whole("ndf", slices.distribution().ndf);
+  out.whole("sigma", slices.distribution().sigma);
   if (!layout.wavelengths_nm.empty()) out.whole("wavelengths", layout.wavelengths_nm);
 
   const std::size_t column_cells = layout.sizes.theta * layout.sizes.slice_cells();
