@@ -23,6 +23,11 @@ def random_pairs(random: np.random.Generator, count: int, below_deg: float) -> n
     return np.stack([theta[:, 0], phi[:, 0], theta[:, 1], phi[:, 1]], axis=-1)
 
 
+def light_and_eye(pairs: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Unit vectors wi, to the light, and wo, to the eye, of [pair][theta_i, phi_i, theta_o, phi_o]."""
+    return vectors(pairs[:, 0], pairs[:, 1]), vectors(pairs[:, 2], pairs[:, 3])
+
+
 def hemisphere(rows: int, columns: int) -> tuple[np.ndarray, np.ndarray]:
     """Midpoints of equal steps in theta (rows) and phi (columns): vectors [rows][columns][3] and solid angles [rows][1]."""
     step = np.pi / 2 / rows

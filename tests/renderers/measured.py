@@ -12,18 +12,19 @@ class Measured:
         self.context = mi.BSDFContext()
         self.interaction = mi.SurfaceInteraction3f()
 
-    def eval_cos(self, wi, wo, wavelengths_nm=None) -> np.ndarray:
-        """f_r cos(theta_o), [pair][channel], of unit vectors wi and wo, [pair][3].
+    def f_r(self, light, eye, wavelengths_nm=None) -> np.ndarray:
+        """1/sr, [pair][channel], of unit vectors to the light and to the eye, [pair][3].
 
+        As in a picture Mitsuba's wi is the direction to the eye, and what it returns holds the light's cosine.
         wavelengths_nm: the four that a spectral variant evaluates together.
         """
         if wavelengths_nm is not None:
             self.interaction.wavelengths = list(wavelengths_nm)
         values = []
-        for one_wi, one_wo in zip(wi.tolist(), wo.tolist()):
-            self.interaction.wi = one_wi
-            values.append(list(self.bsdf.eval(self.context, self.interaction, one_wo)))
-        return np.array(values)
+        for wi, wo in zip(eye.tolist(), light.tolist()):
+            self.interaction.wi = wi
+            values.append(list(self.bsdf.eval(self.context, self.interaction, wo)))
+        return np.array(values) / light[:, 2:]
 
     def eval_pdf(self, wi, wo) -> tuple[np.ndarray, np.ndarray]:
         """f_r cos(theta_o), [direction][channel], and the density of samples, for one wi [3] and many wo [direction][3]."""

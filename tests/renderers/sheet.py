@@ -9,6 +9,8 @@ import pathlib
 import mitsuba as mi
 import numpy as np
 
+import program
+
 VERTEX = np.dtype([(name, "<f4") for name in ("x", "y", "z", "nx", "ny", "nz", "u", "v")])
 FACE = np.dtype([("count", "u1"), ("corners", "<i4", 3)])
 
@@ -84,3 +86,12 @@ def render(bsdf: pathlib.Path, mesh: pathlib.Path, size: int, light: np.ndarray)
         "sheet": {"type": "ply", "filename": str(mesh), "bsdf": {"type": "measured", "filename": str(bsdf)}},
     })
     return np.array(mi.render(scene))[..., :3]
+
+
+def preview(file: pathlib.Path, size: int, light_deg: tuple[float, float], folder: pathlib.Path) -> np.ndarray:
+    """Our own picture of a material or table, [row][column][3], without its caption."""
+    path = folder / "preview.exr"
+    program.run("preview", file, "-o", path, "--size", size, "--light", f"{light_deg[0]},{light_deg[1]}")
+    picture = np.array(mi.Bitmap(str(path)).convert(mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.Float32, False))
+    gap = (picture.shape[1] - size) // 2
+    return picture[-gap - size : -gap, gap:-gap]

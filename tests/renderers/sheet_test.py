@@ -19,16 +19,6 @@ LIGHTS_DEG = ((0, 0), (40, 20), (60, 250))
 LIMITS = {50: 0.5, 99: 5}
 
 
-def preview(material: str, light_deg: tuple[float, float], folder: pathlib.Path) -> np.ndarray:
-    """Our own picture, [row][column][3], without its caption."""
-    path = folder / "sheet.exr"
-    program.run("preview", program.material_file(material), "-o", path, "--size", SIZE,
-                "--light", f"{light_deg[0]},{light_deg[1]}")
-    picture = np.array(mi.Bitmap(str(path)).convert(mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.Float32, False))
-    gap = (picture.shape[1] - SIZE) // 2
-    return picture[-gap - SIZE : -gap, gap:-gap]
-
-
 class SheetTest(unittest.TestCase):
     """Lit from above and from the side, by files of 5 MB."""
 
@@ -63,7 +53,7 @@ class SheetTest(unittest.TestCase):
             for light_deg in LIGHTS_DEG:
                 name = f"{material} lit from {light_deg}"
                 with self.subTest(name):
-                    ours = preview(material, light_deg, self.folder)
+                    ours = sheet.preview(program.material_file(material), SIZE, light_deg, self.folder)
                     theirs = sheet.render(bsdf, mesh, SIZE, vectors(*np.radians(light_deg)))
                     mi.util.write_bitmap(os.path.join(kept, f"sheet_{material}_{light_deg[0]}.png"),
                                          np.hstack([ours, theirs]))

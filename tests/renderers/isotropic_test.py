@@ -1,0 +1,49 @@
+"""An isotropic .bsdf file holds the mean of f_r over rotations of the cloth."""
+
+import os
+import tempfile
+import unittest
+
+import mitsuba as mi
+import numpy as np
+
+import program
+from accuracy import error_percentiles, judge
+from directions import light_and_eye, random_pairs
+from measured import Measured
+
+SEED = 20261122
+PAIRS = 1000
+ROTATIONS = 160  # over half a turn, after which our cloths are as before; a lobe is 2 steps wide or more
+LIMITS = (0.3, 1.8, 5.0)  # percent
+
+
+class IsotropicTest(unittest.TestCase):
+    """Over pairs uniform in solid angle where theta < 80 degrees."""
+
+    def means(self, material: str, pairs: np.ndarray, folder: str) -> np.ndarray:
+        """The model's, [pair][channel]."""
+        turned = np.repeat(pairs, ROTATIONS, axis=0)
+        turned[:, 1::2] += np.tile(np.arange(ROTATIONS) * np.pi / ROTATIONS, len(pairs))[:, None]
+        exact = program.exact(program.material_file(material), turned, folder)
+        return exact.reshape(len(pairs), ROTATIONS, -1).mean(axis=1)
+
+    def test_isotropic_files_hold_the_mean_over_rotations(self):
+        pairs = random_pairs(np.random.default_rng(SEED), PAIRS, 80)
+        for material in program.MATERIALS:
+            with self.subTest(material), tempfile.TemporaryDirectory() as folder:
+                path = os.path.join(folder, f"{material}.bsdf")
+                program.run("tabulate", program.material_file(material), "--isotropic", "-o", path)
+                f = Measured(path).f_r(*light_and_eye(pairs))
+                self.assertTrue(np.isfinite(f).all() and f.min() >= 0, material)
+                errors = error_percentiles(f, self.means(material, pairs, folder))
+                judge(self, f"{material}, {os.path.getsize(path)} bytes", errors, LIMITS)
+
+
+def setUpModule():
+    mi.set_variant("scalar_rgb")
+    print("seed", SEED)
+
+
+if __name__ == "__main__":
+    unittest.main()
