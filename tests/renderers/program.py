@@ -9,12 +9,31 @@ import numpy as np
 
 PROGRAM = os.environ["CLOTHBRDF_PROGRAM"]
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
-MATERIALS = ("silk", "cotton", "tamamushi")
 
 
 def material_file(name: str) -> pathlib.Path:
     """One of the project's materials."""
     return SOURCE / "materials" / f"{name}.json"
+
+
+def plain_materials() -> list[pathlib.Path]:
+    """The paper's three cloths."""
+    return [material_file(name) for name in ("silk", "cotton", "tamamushi")]
+
+
+def turned_material(folder) -> pathlib.Path:
+    """Shot silk turned by 30 degrees: unlike the plain ones it is not its own mirror image."""
+    path = pathlib.Path(folder) / "turned_tamamushi.json"
+    path.write_text(json.dumps(json.loads(material_file("tamamushi").read_text()) | {"rotation_deg": 30}))
+    return path
+
+
+def tabulate(material: pathlib.Path, folder, *options) -> pathlib.Path:
+    """The material's .bsdf file in a folder."""
+    path = pathlib.Path(folder) / f"{material.stem}.bsdf"
+    run("tabulate", material, "-o", path, *options)
+    print(f"{path.name}: {path.stat().st_size} bytes")
+    return path
 
 
 def shared_data() -> pathlib.Path:

@@ -49,8 +49,7 @@ class ReaderTest(unittest.TestCase):
 
     def test_our_files_are_read_as_mitsuba_reads_them(self):
         with tempfile.TemporaryDirectory() as folder:
-            bsdf = pathlib.Path(folder) / "tamamushi.bsdf"
-            program.run("tabulate", program.material_file("tamamushi"), "-o", bsdf, "--size", 5_000_000)
+            bsdf = program.tabulate(program.turned_material(folder), folder, "--size", 5_000_000)
             self.compare(bsdf, pathlib.Path(folder))
 
 

@@ -1,6 +1,5 @@
 """Mitsuba's picture of the wrinkled sheet, from a .bsdf file, is preview's, from the model."""
 
-import os
 import pathlib
 import tempfile
 import unittest
@@ -47,16 +46,15 @@ class SheetTest(unittest.TestCase):
         mesh = self.folder / "sheet.ply"
         sheet.write_ply(mesh, SIZE)
         kept = program.pictures_folder()
-        for material in program.MATERIALS:
-            bsdf = self.folder / f"{material}.bsdf"
-            program.run("tabulate", program.material_file(material), "-o", bsdf, "--size", 5_000_000)
+        for material in (*program.plain_materials(), program.turned_material(self.folder)):
+            bsdf = program.tabulate(material, self.folder, "--size", 5_000_000)
             for light_deg in LIGHTS_DEG:
-                name = f"{material} lit from {light_deg}"
+                name = f"{material.stem} lit from {light_deg}"
                 with self.subTest(name):
-                    ours = sheet.preview(program.material_file(material), SIZE, light_deg, self.folder)
+                    ours = sheet.preview(material, SIZE, light_deg, self.folder)
                     theirs = sheet.render(bsdf, mesh, SIZE, vectors(*np.radians(light_deg)))
-                    mi.util.write_bitmap(os.path.join(kept, f"sheet_{material}_{light_deg[0]}.png"),
-                                         np.hstack([ours, theirs]))
+                    picture = kept / f"sheet_{material.stem}_{light_deg[0]}.png"
+                    mi.util.write_bitmap(str(picture), np.hstack([ours, theirs]))
                     self.compare(name, ours, theirs)
 
 
