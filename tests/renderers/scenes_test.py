@@ -87,9 +87,9 @@ class ScenesTest(unittest.TestCase):
         exact = np.pi * program.exact(material, pairs, self.folder) * wi[lit][:, 2:]
         errors = 100 * np.abs(picture[lit] / exact - 1).max(axis=-1)
         reached = {percentile: np.percentile(errors, percentile) for percentile in LIMITS}
-        print(f"{name}: {lit.sum()} lit pixels, {judged.sum() - lit.sum()} in shadow; difference at percentiles",
-              {percentile: f"{error:.3f} %" for percentile, error in reached.items()}, f"largest {errors.max():.3f} %",
-              flush=True)
+        shown = ", ".join(f"{error:.3f} % at {percentile}" for percentile, error in reached.items())
+        print(f"{name}: {lit.sum()} lit pixels, {judged.sum() - lit.sum()} in shadow, percentiles of the difference: "
+              f"{shown}, largest {errors.max():.3f} %", flush=True)
         for percentile, error in reached.items():
             self.assertLessEqual(error, LIMITS[percentile], f"{name}, percentile {percentile}")
 

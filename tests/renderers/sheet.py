@@ -28,7 +28,7 @@ def slopes(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 def normals(x: np.ndarray, y: np.ndarray) -> np.ndarray:
     """[...][3]."""
-    along_x, along_y = slopes(x, y)
+    along_x, along_y = slopes(*np.broadcast_arrays(x, y))
     n = np.stack([-along_x, -along_y, np.ones_like(along_x)], axis=-1)
     return n / np.linalg.norm(n, axis=-1, keepdims=True)
 
