@@ -8,7 +8,7 @@ FEWEST = 5  # expected in a bin; bins of fewer are pooled
 
 
 def survival(statistic: float, freedom: int) -> float:
-    """Chance of a chi-square value at least as large (Wilson and Hilferty 1931; to 0.001 from 10 degrees of freedom)."""
+    """Chance of a chi-square value at least as large (Wilson and Hilferty 1931), to 0.001 from freedom 10 on."""
     spread = 2 / (9 * freedom)
     return 0.5 * math.erfc(((statistic / freedom) ** (1 / 3) - (1 - spread)) / math.sqrt(2 * spread))
 

@@ -29,7 +29,7 @@ def light_and_eye(pairs: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def hemisphere(rows: int, columns: int) -> tuple[np.ndarray, np.ndarray]:
-    """Midpoints of equal steps in theta (rows) and phi (columns): vectors [rows][columns][3] and solid angles [rows][1]."""
+    """Midpoints of equal steps in theta and phi: vectors, [rows][columns][3], and solid angles, [rows][1]."""
     step = np.pi / 2 / rows
     theta = (np.arange(rows) + 0.5) * step
     phi = (np.arange(columns) + 0.5) * 2 * np.pi / columns

@@ -1,4 +1,4 @@
-"""The commands of examples/README.md draw the same cloth in R, G and B and in wavelengths; pbrt's scene is Mitsuba's."""
+"""The commands of examples/README.md draw one cloth in R, G, B and in wavelengths; pbrt's scene is Mitsuba's."""
 
 import os
 import pathlib

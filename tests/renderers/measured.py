@@ -27,7 +27,7 @@ class Measured:
         return np.array(values) / light[:, 2:]
 
     def eval_pdf(self, wi, wo) -> tuple[np.ndarray, np.ndarray]:
-        """f_r cos(theta_o), [direction][channel], and the density of samples, for one wi [3] and many wo [direction][3]."""
+        """f_r cos(theta_o), [direction][channel], and density of samples: one wi, [3], many wo, [direction][3]."""
         self.interaction.wi = wi.tolist()
         values, densities = [], []
         for one_wo in wo.tolist():

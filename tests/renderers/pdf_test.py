@@ -19,6 +19,7 @@ THETAS_DEG = (0, 20, 40, 60, 70, 80)
 PHIS_DEG = (0, 90, 205)
 MOST_OFF_ONE = 0.01
 MOST_ALBEDO_ERROR = 0.005
+MOST_WEIGHT = 1.5  # of a sample; larger ones are bright dots in pictures
 LEVEL = 0.01  # chance that the chi-square tests of all directions and files fail for right samples
 
 
@@ -66,6 +67,7 @@ class PdfTest(unittest.TestCase):
         """All that holds for one wi."""
         self.assertTrue(np.isfinite(figures.weights).all() and np.isfinite(figures.densities).all(), name)
         self.assertGreaterEqual(figures.weights.min(), 0, name)
+        self.assertLessEqual(figures.weights.max(), MOST_WEIGHT, f"{name}: weight")
         self.assertLessEqual(abs(figures.integral - 1), MOST_OFF_ONE, f"{name}: integral of the density")
         self.assertLessEqual(figures.albedo_error(), MOST_ALBEDO_ERROR, f"{name}: albedo of the samples")
         self.assertGreaterEqual(figures.significance, level, f"{name}: chi-square")

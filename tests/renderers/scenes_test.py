@@ -18,6 +18,8 @@ AOVS = {"position": "p", "sh_normal": "n", "dp_du": "t"}
 # Largest relative difference of lit pixels below 80 degrees, the worst of R, G and B in each, percent: at the median
 # and the 99th percentile. The file alone accounts for 0.3 and 5 (eval_test.py).
 LIMITS = {50: 0.5, 99: 5}
+# Beyond 80 degrees files are less exact, but nothing may shine there: the largest difference, of white.
+MOST_BEYOND = 0.2
 
 
 def shapes() -> dict[str, dict]:
@@ -73,25 +75,27 @@ class ScenesTest(unittest.TestCase):
         self.folder = pathlib.Path(folder.name)
 
     def compare(self, name: str, material: pathlib.Path, picture: np.ndarray, points: dict[str, np.ndarray]):
-        """Every pixel that both see lit below 80 degrees."""
+        """Pixel by pixel, where Mitsuba's is lit."""
         wo = in_cloth(points, normalized(EYE - points["position"]))
         wi = in_cloth(points, np.broadcast_to(LIGHT, wo.shape))
         same_side = wi[..., 2] * wo[..., 2] > 0
         wi[..., 2], wo[..., 2] = np.abs(wi[..., 2]), np.abs(wo[..., 2])
         self.assertTrue(np.isfinite(picture).all() and picture.min() >= 0, name)
         self.assertEqual(picture[~same_side & (wi[..., 2] > 1e-5) & (wo[..., 2] > 1e-5)].max(), 0, f"{name}: dark side")
-        judged = same_side & (wi[..., 2] > BELOW) & (wo[..., 2] > BELOW)
-        lit = judged & (picture.min(axis=-1) > 0)
-        self.assertGreater(lit.sum(), 5000, name)
+        lit = same_side & (picture.min(axis=-1) > 0)
         pairs = np.concatenate([angles(wi[lit]), angles(wo[lit])], axis=-1)
         exact = np.pi * program.exact(material, pairs, self.folder) * wi[lit][:, 2:]
-        errors = 100 * np.abs(picture[lit] / exact - 1).max(axis=-1)
+        judged = ((wi[..., 2] > BELOW) & (wo[..., 2] > BELOW))[lit]
+        self.assertGreater(judged.sum(), 5000, name)
+        errors = 100 * np.abs(picture[lit] / exact - 1).max(axis=-1)[judged]
         reached = {percentile: np.percentile(errors, percentile) for percentile in LIMITS}
+        beyond = np.abs(picture[lit] - exact)[~judged]
         shown = ", ".join(f"{error:.3f} % at {percentile}" for percentile, error in reached.items())
-        print(f"{name}: {lit.sum()} lit pixels, {judged.sum() - lit.sum()} in shadow, percentiles of the difference: "
-              f"{shown}, largest {errors.max():.3f} %", flush=True)
+        print(f"{name}: {judged.sum()} pixels below 80 degrees, percentiles of the difference: {shown}; "
+              f"{(~judged).sum()} pixels beyond, largest difference {beyond.max():.3f}", flush=True)
         for percentile, error in reached.items():
             self.assertLessEqual(error, LIMITS[percentile], f"{name}, percentile {percentile}")
+        self.assertLessEqual(beyond.max(), MOST_BEYOND, f"{name}, beyond 80 degrees")
 
     def test_pictures_are_the_models(self):
         for material in (*program.plain_materials(), program.turned_material(self.folder)):

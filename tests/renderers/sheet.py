@@ -36,8 +36,8 @@ def normals(x: np.ndarray, y: np.ndarray) -> np.ndarray:
 def flat_tangents(n: np.ndarray) -> np.ndarray:
     """What dp/du must be in the plane of the sheet, [...][2], for a renderer that makes it orthogonal to n.
 
-    The weft is x turned the short way from z to n: t = x - n_x (x n_x + y n_y) / (1 + n_z) - z n_x; t + n n_x / n_z lies
-    in the plane and becomes t again.
+    The weft is x turned the short way from z to n, t = x - n_x (x n_x + y n_y) / (1 + n_z) - z n_x. t + n n_x / n_z
+    lies in the plane and becomes t again.
     """
     share = n[..., 0] * (1 / n[..., 2] - 1 / (1 + n[..., 2]))
     return np.stack([1 + share * n[..., 0], share * n[..., 1]], axis=-1)

@@ -1,4 +1,4 @@
-"""What Mitsuba reads in a spectral .bsdf file is the model's f_r at its wavelengths, or has the colour of its R, G, B."""
+"""What Mitsuba reads in a spectral .bsdf file is the model's f_r, or has the colour of its R, G and B."""
 
 import json
 import pathlib
@@ -33,7 +33,7 @@ def spectra(bsdf: Measured, pairs: np.ndarray, wavelengths_nm) -> np.ndarray:
 
 
 def rgb_weights(wavelengths_nm: np.ndarray) -> np.ndarray:
-    """Linear R, G, B in light D65 from a spectrum at equally spaced wavelengths, by Mitsuba's tables: [wavelength][3]."""
+    """Of linear R, G, B in light D65 at equally spaced wavelengths, by Mitsuba's tables: [wavelength][3]."""
     light = [mi.cie_d65(float(wavelength)) for wavelength in wavelengths_nm]
     observer = np.array([list(mi.cie1931_xyz(float(wavelength))) for wavelength in wavelengths_nm])
     weights = np.array([list(mi.xyz_to_srgb(row.tolist())) for row in observer * np.array(light)[:, None]])
