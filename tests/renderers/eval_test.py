@@ -12,7 +12,6 @@ from accuracy import error_percentiles, judge
 from directions import light_and_eye, random_pairs
 from measured import Measured
 
-SEED = 20261122
 PAIRS = 10000
 # Bytes allowed: the largest errors where theta < 80 degrees, percent.
 LIMITS = {5_000_000: (0.30, 1.8, 5.0), 50_000_000: (0.08, 0.55, 1.4)}
@@ -35,7 +34,7 @@ class EvalTest(unittest.TestCase):
 
     def errors(self, material: pathlib.Path, bsdf: Measured, below_deg: float) -> np.ndarray:
         """Below an angle; fails for what is negative or no number."""
-        pairs = random_pairs(np.random.default_rng(SEED), PAIRS, below_deg)
+        pairs = random_pairs(np.random.default_rng(program.SEED), PAIRS, below_deg)
         exact = program.exact(material, pairs, self.folder)
         f = bsdf.f_r(*light_and_eye(pairs))
         self.assertTrue(np.isfinite(f).all(), f"{material.stem}: theta < {below_deg}: not finite")
@@ -59,7 +58,7 @@ class EvalTest(unittest.TestCase):
 
 def setUpModule():
     mi.set_variant("scalar_rgb")
-    print("seed", SEED)
+    print("seed", program.SEED)
 
 
 if __name__ == "__main__":

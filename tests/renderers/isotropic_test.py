@@ -12,7 +12,6 @@ from accuracy import error_percentiles, judge
 from directions import light_and_eye, random_pairs
 from measured import Measured
 
-SEED = 20261122
 PAIRS = 500
 ROTATIONS = 160  # over half a turn, after which our cloths are as before; a lobe is 2 steps wide or more
 LIMITS = (0.05, 0.4, 1.0)  # percent
@@ -29,7 +28,7 @@ class IsotropicTest(unittest.TestCase):
         return exact.reshape(len(pairs), ROTATIONS, -1).mean(axis=1)
 
     def test_isotropic_files_hold_the_mean_over_rotations(self):
-        pairs = random_pairs(np.random.default_rng(SEED), PAIRS, 80)
+        pairs = random_pairs(np.random.default_rng(program.SEED), PAIRS, 80)
         for material in program.plain_materials():
             with self.subTest(material.stem), tempfile.TemporaryDirectory() as folder:
                 f = Measured(program.tabulate(material, folder, "--isotropic")).f_r(*light_and_eye(pairs))
@@ -39,7 +38,7 @@ class IsotropicTest(unittest.TestCase):
 
 def setUpModule():
     mi.set_variant("scalar_rgb")
-    print("seed", SEED)
+    print("seed", program.SEED)
 
 
 if __name__ == "__main__":

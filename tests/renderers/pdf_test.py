@@ -11,7 +11,6 @@ from chi_square import sidak, significance
 from directions import angles, hemisphere, vectors
 from measured import Measured
 
-SEED = 20261122
 SAMPLES = 50000
 ROWS, COLUMNS = 240, 480  # of the quadrature: the sharpest lobe is 0.1 rad wide, 15 steps
 BIN_ROWS, BIN_COLUMNS = 12, 24
@@ -76,7 +75,7 @@ class PdfTest(unittest.TestCase):
         directions = [(theta, phi) for theta in THETAS_DEG for phi in (PHIS_DEG if theta > 0 else (0,))]
         materials = [*program.plain_materials(), program.turned_material(self.folder)]
         level = sidak(LEVEL, len(directions) * len(materials))
-        random = np.random.default_rng(SEED)
+        random = np.random.default_rng(program.SEED)
         for material in materials:
             bsdf = Measured(program.tabulate(material, self.folder, "--size", 5_000_000))
             for theta, phi in directions:
@@ -91,7 +90,7 @@ class PdfTest(unittest.TestCase):
 
 def setUpModule():
     mi.set_variant("scalar_rgb")
-    print("seed", SEED)
+    print("seed", program.SEED)
 
 
 if __name__ == "__main__":

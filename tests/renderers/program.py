@@ -8,6 +8,7 @@ import subprocess
 import numpy as np
 
 PROGRAM = os.environ["CLOTHBRDF_PROGRAM"]
+SEED = int(os.environ.get("CLOTHBRDF_SEED", "20261122"))  # of the tests' random numbers
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 
 

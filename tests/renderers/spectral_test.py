@@ -13,7 +13,6 @@ from accuracy import error_percentiles, judge
 from directions import light_and_eye, random_pairs
 from measured import Measured
 
-SEED = 20261122
 PAIRS = 3000
 BYTES = 30_000_000  # as many nodes as RGB files of 5 MB have, and held to the same
 LIMITS = (0.30, 1.8, 5.0)  # percent, where theta < 80 degrees
@@ -47,7 +46,7 @@ class SpectralTest(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
-        self.pairs = random_pairs(np.random.default_rng(SEED), PAIRS, 80)
+        self.pairs = random_pairs(np.random.default_rng(program.SEED), PAIRS, 80)
 
     def tabulated(self, material: pathlib.Path) -> Measured:
         """A spectral file."""
@@ -78,7 +77,7 @@ class SpectralTest(unittest.TestCase):
 
 def setUpModule():
     mi.set_variant("scalar_spectral")
-    print("seed", SEED)
+    print("seed", program.SEED)
 
 
 if __name__ == "__main__":
