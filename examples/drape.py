@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Drapes a square of cloth over a ball, and writes it as drape.ply: how the example scenes' mesh was made.
 
 Needs numpy. The cloth is a grid of points, joined along the yarns, across the squares and over two of them, that falls
