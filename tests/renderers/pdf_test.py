@@ -18,7 +18,7 @@ THETAS_DEG = (0, 20, 40, 60, 70, 80)
 PHIS_DEG = (0, 90, 205)
 MOST_OFF_ONE = 0.01
 MOST_ALBEDO_ERROR = 0.005
-MOST_WEIGHT = 1.5  # of a sample; larger ones are bright dots in pictures
+MOST_WEIGHT = 10  # of a sample; larger ones are bright dots in pictures
 LEVEL = 0.01  # chance that the chi-square tests of all directions and files fail for right samples
 
 
