@@ -103,6 +103,19 @@ def whole_processes(program, folder):
     figures["peak memory, large.exr"] = {
         "value": streamed.peak_mb, "unit": "MB", "limit": 200, "least_measurable": least,
         "file_mb": round(large.stat().st_size / 1e6, 1), "seconds": round(streamed.seconds, 3)}
+    figures |= tensor_files(program, folder)
+    return figures
+
+
+def tensor_files(program, folder):
+    """Whole processes that write RGL's .bsdf files, of the largest sizes that the limits are for."""
+    figures = {}
+    for size, limit in ((5_000_000, 0.5), (50_000_000, 3)):
+        write = (program, "tabulate", "materials/silk.json", "-o", folder / "silk.bsdf", "--size", str(size))
+        runs = [run(*write) for _ in range(5)]
+        name = f"RGL file of {size // 1_000_000} MB"
+        figures[name] = {"value": statistics.median(r.seconds for r in runs), "unit": "s", "limit": limit}
+        figures[name + ", peak memory"] = {"value": max(r.peak_mb for r in runs), "unit": "MB", "limit": 300}
     return figures
 
 

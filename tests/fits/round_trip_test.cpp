@@ -149,7 +149,7 @@ TEST_CASE("random cloths come back from scattered samples, isotropic or not") {
     const Table table = collect(*make_producer(material_spec(truth, {}, list), 1), 1);
     const FitReport report = fit_table(table, conventions_of(truth), 1);
     add(report, truth, isotropic ? 1 : 0, kExactly, tally);
-    CHECK(report.equivalents.empty() != isotropic);
+    if (isotropic) CHECK(report.equivalents.size() == 7);
   }
   std::cout << "round trip, scattered samples: " << tally << " (seed " << seed << ")\n";
 }
