@@ -97,6 +97,7 @@ TEST_CASE("any small RGL file is evaluated as by a plain reader, whatever its fi
       const std::vector<double> f = f_at(table, pair);
       const std::vector<double> expected = strict.f(pair.wi, pair.wo);
       for (std::size_t c = 0; c < 3; ++c) {
+        CHECK(expected[c] > 0);
         worst = std::max(worst, std::abs(f[c] / expected[c] - 1));
       }
     }
