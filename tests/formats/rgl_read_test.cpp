@@ -197,6 +197,8 @@ TEST_CASE("every truncation of an RGL file is refused") {
     INFO(length << " of " << bytes.size() << " bytes");
     CHECK_THROWS_AS(read_bytes(folder, bytes.substr(0, length)), InputError);
   }
+  CHECK_THROWS_WITH(read_bytes(folder, bytes.substr(0, bytes.size() - 1)),
+                    ContainsSubstring("field 'jacobian': its values go beyond the end"));
   CHECK_NOTHROW(read_bytes(folder, bytes));
   CHECK_THROWS_WITH(read_bytes(folder, bytes + std::string(5000, 'x')),
                     ContainsSubstring("bytes follow"));
@@ -266,6 +268,14 @@ TEST_CASE("an RGL file that contradicts itself is refused in one line") {
   refused("sigma", floats("ndf", {2, 2}, {1, 1, 1, 1}), "'ndf' is there twice");
   refused("jacobian", tensor_of("jacobian", 12, {1}, std::vector<char>{1}), "type 12");
   refused("description", tensor_of("description", 1, {0}, std::vector<char>{}), "holds nothing");
+  // The second field's values where the first one's are: 18 bytes of file head, 13 and the name and
+  // 8 for one dimension of each field.
+  std::string shared = tensor_file(good);
+  const std::size_t first = 18 + 2 + 11 + 2 + 1;
+  const std::size_t second = 18 + 13 + 11 + 8 + 2 + 5 + 2 + 1;
+  shared.replace(second, 8, shared.substr(first, 8));
+  CHECK_THROWS_WITH(read_bytes(folder, shared),
+                    ContainsSubstring("its values do not follow the others'"));
   CHECK_THROWS_WITH(read_bytes(folder, "tensor_file"), ContainsSubstring("no RGL tensor file"));
   CHECK_THROWS_AS(format_for("t.bsdf").read(folder / "absent.bsdf"), InputError);
   CHECK_THROWS_AS(format_for("t.bsdf").read(folder.path()), InputError);
