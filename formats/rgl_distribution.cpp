@@ -23,7 +23,8 @@ void put_pairs_around(double theta_h, double phi_h, std::span<Directions> pairs)
                              std::cos(theta_h) * std::sin(phi_h), -std::sin(theta_h)};
   const Vector3<double> b = {-std::sin(phi_h), std::cos(phi_h), 0};
   for (std::size_t p = 0; p < pairs.size(); ++p) {
-    const double sin_d = std::sqrt((static_cast<double>(p / kPhiParts) + 0.5) / kThetaParts);
+    const std::size_t theta_part = p / kPhiParts;
+    const double sin_d = std::sqrt((static_cast<double>(theta_part) + 0.5) / kThetaParts);
     const double cos_d = std::sqrt(1 - sin_d * sin_d);
     const double phi_d =
         2 * std::numbers::pi * (static_cast<double>(p % kPhiParts) + 0.5) / kPhiParts;

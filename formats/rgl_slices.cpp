@@ -22,7 +22,8 @@ double dot(const Vector3<double>& a, const Vector3<double>& b) {
 
 SquarePoint node_of(std::size_t index, std::size_t side) {
   const double last = static_cast<double>(side - 1);
-  return {static_cast<double>(index % side) / last, static_cast<double>(index / side) / last};
+  const std::size_t row = index / side;
+  return {static_cast<double>(index % side) / last, static_cast<double>(row) / last};
 }
 
 // Y of the channels.

@@ -32,8 +32,7 @@ class RglSlices {
   struct Nodes;
   Nodes place_nodes(std::size_t phi, std::size_t theta, std::span<float> densities) const;
   void fill_slice(std::size_t phi, std::size_t theta, RglColumn& column) const;
-  void fill_luminance(const Nodes& nodes, std::span<const double> f,
-                      std::span<float> luminance) const;
+  void fill_luminance(const Nodes& nodes, std::span<const double> f, std::span<float> wanted) const;
 
   const Producer& producer_;
   const RglLayout& layout_;

@@ -42,7 +42,7 @@ class RglTensors final : public Interpolant {
     std::size_t rows;
     std::size_t columns;
   };
-  static Grid2d read_grid(const TensorFile& file, const std::string& field);
+  static Grid2d read_grid(const TensorFile& file, const std::string& name);
   void read_axes(const TensorFile& file);
   Warp read_warp(const TensorFile& file) const;
   void read_values(const TensorFile& file);

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "model/directions.h"
+#include "table/grid.h"
 
 namespace clothbrdf {
 

@@ -34,14 +34,15 @@ class StrictRgl {
     for (int a = 0; a < 3; ++a) length += std::pow(light[a] + eye[a], 2);
     for (int a = 0; a < 3; ++a) m[a] = (light[a] + eye[a]) / std::sqrt(length);
     const auto u_of = [&](double x, double y, double z, double u[2]) {
-      u[0] = std::sqrt(2 * std::acos(std::min(1.0, z)) / pi);
+      u[0] = std::sqrt(2 * angle_from_normal(x, y, z) / pi);
       u[1] = (std::atan2(y, x) + pi) / (2 * pi);
     };
     double u_m[2];
     double u_i[2];
     u_of(m[0], m[1], m[2], u_m);
+    u_m[1] -= std::floor(u_m[1]);
     u_of(eye[0], eye[1], eye[2], u_i);
-    const double theta = std::acos(std::min(1.0, eye[2]));
+    const double theta = angle_from_normal(eye[0], eye[1], eye[2]);
     const double phi = std::atan2(eye[1], eye[0]);
     double w_phi;
     double w_theta;
@@ -62,8 +63,7 @@ class StrictRgl {
       const double w = (k / 2 ? w_phi : 1 - w_phi) * (k % 2 ? w_theta : 1 - w_theta);
       const std::size_t slice = (p + k / 2) * values("theta_i").size() + t + k % 2;
       for (std::size_t c = 0; c < channels(); ++c) {
-        result[c] +=
-            w * look_up(values(color_).data() + (slice * channels() + c) * n * n, n, n, u);
+        result[c] += w * look_up(values(color_).data() + (slice * channels() + c) * n * n, n, n, u);
       }
     }
     const auto table = [&](const std::string& name, const double at[2]) {
@@ -74,6 +74,11 @@ class StrictRgl {
   }
 
  private:
+  // From the chord: acos loses half of the digits near the normal.
+  static double angle_from_normal(double x, double y, double z) {
+    return 2 * std::asin(std::min(1.0, std::sqrt(x * x + y * y + (z - 1) * (z - 1)) / 2));
+  }
+
   static std::size_t place(const std::vector<float>& nodes, double at, double& share) {
     std::size_t k = 0;
     while (k + 2 < nodes.size() && double{nodes[k + 1]} <= at) ++k;
