@@ -35,8 +35,7 @@ Header header_of(const TableSpec& spec, const AltaLayout& layout, Encoding encod
                   std::to_string(spec.channels.size()) + "\n#PARAM_IN " +
                   std::string(layout.parametrisation()) + "\n#PARAM_OUT " +
                   std::string(layout.output()) + "\n#VS 0\n#SAMPLE_COUNT ";
-  header.after = "\n";
-  if (spec.has_grid()) header.after += "#CLOTHBRDF " + table_metadata(spec) + "\n";
+  header.after = "\n#CLOTHBRDF " + table_metadata(spec) + "\n";
   if (encoding == Encoding::kBinary) {
     header.after +=
         "#FORMAT binary\n#VERSION 0\n#PRECISION ieee754-double\n#ENDIAN little\n#BEGIN_STREAM\n";
@@ -144,13 +143,6 @@ Samples alta_samples(Reflectance reflectance, bool isotropic) {
 void check_alta(const TableSpec& spec, const WriteOptions& /*none*/, const std::string& name) {
   if (!spec.has_grid() && !spec.has_pairs()) {
     throw InputError(name + ": ALTA holds grids and lists of pairs, not " + spec.description());
-  }
-  const bool plain = spec.channels == rgb_channels() ||
-                     (spec.channels.size() == 1 && spec.channels.front().part == Part::kTotal);
-  if (spec.has_pairs() && !plain) {
-    throw InputError(name + ": " + std::to_string(spec.channels.size()) +
-                     " channels are not allowed: ALTA's list of pairs holds R, G and B or one "
-                     "channel");
   }
   if (spec.cell_count() > std::numeric_limits<std::int32_t>::max()) {
     throw InputError(name + ": " + spec.description() + " is not allowed: ALTA counts up to " +

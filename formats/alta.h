@@ -15,11 +15,11 @@ namespace clothbrdf {
 /// Cells below the horizon and cells that were not measured (marked by a negative value) are left
 /// out: ALTA would take them for data.
 ///
-/// The key CLOTHBRDF, which ALTA passes over, holds a grid's description (table_metadata): with it
-/// the file reads back as the same table, and contradictions are refused. Other files read as lists
-/// of pairs; what their parametrisation leaves open is said in a note. Values other than f_r in
-/// 1/sr are refused: ENERGY and XYZ_COLOR have no scale, of INV_STERADIAN_COSINE_FACTOR ALTA says
-/// in three ways which cosine it holds. One value a sample is the channel "mono".
+/// The key CLOTHBRDF, which ALTA passes over, holds the table's description (table_metadata): with
+/// it the file reads back as the same table, and contradictions are refused. Other files read as
+/// lists of pairs; what their parametrisation leaves open is said in a note. Their values must be
+/// f_r in 1/sr: ENERGY and XYZ_COLOR have no scale, and of INV_STERADIAN_COSINE_FACTOR ALTA says in
+/// three ways which cosine it holds. One value a sample is the channel "mono".
 Format alta_format();
 
 /// The same in binary, `.dat`: rows of 64-bit floats. Either format reads both.

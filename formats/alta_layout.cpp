@@ -1,5 +1,6 @@
 #include "formats/alta_layout.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -31,7 +32,12 @@ AltaLayout::AltaLayout(const TableSpec& spec)
       dimension_(spec.has_grid() ? spec.grid().axes.size() : (spec.isotropic() ? 3 : 4)) {}
 
 std::string_view AltaLayout::output() const {
-  return spec_.channels == rgb_channels() ? "RGB_COLOR" : "INV_STERADIAN";
+  const auto same = [](const Channel& a, const Channel& b) {
+    return a.name == b.name && a.part == b.part;
+  };
+  const bool rgb = std::equal(spec_.channels.begin(), spec_.channels.end(), rgb_channels().begin(),
+                              rgb_channels().end(), same);
+  return rgb ? "RGB_COLOR" : "INV_STERADIAN";
 }
 
 bool AltaLayout::holds(std::size_t cell) const {

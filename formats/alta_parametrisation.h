@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "model/directions.h"
+#include "table/grid.h"
 
 namespace clothbrdf {
 

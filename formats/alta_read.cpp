@@ -11,6 +11,7 @@
 #include "formats/alta_parametrisation.h"
 #include "formats/alta_rows.h"
 #include "formats/file_bytes.h"
+#include "formats/format_colours.h"
 #include "formats/json_text.h"
 #include "formats/table_metadata.h"
 #include "support/errors.h"
@@ -47,7 +48,7 @@ std::vector<Channel> channels_of(const AltaRows& rows, const std::string& name, 
   if (output != "RGB_COLOR" && output != "INV_STERADIAN") {
     fail("'" + one_line(output) + "' is not allowed; RGB_COLOR and INV_STERADIAN are");
   }
-  if (rows.outputs == 1 && output == "INV_STERADIAN") return {{"mono", Part::kTotal, 0}};
+  if (rows.outputs == 1 && output == "INV_STERADIAN") return {{kMono, Part::kTotal, 0}};
   if (rows.outputs != 3) {
     fail(output + " with " + std::to_string(rows.outputs) +
          " values is not allowed: 3, or 1 of INV_STERADIAN");
@@ -56,15 +57,22 @@ std::vector<Channel> channels_of(const AltaRows& rows, const std::string& name, 
   return rgb_channels();
 }
 
-Table list_of(AltaRows rows, const std::string& name) {
+// The spec of a file without our description, but for its samples.
+TableSpec foreign_spec(const AltaRows& rows, const std::string& name) {
+  std::string note;
+  TableSpec spec{{}, channels_of(rows, name, note), {}, {}};
+  spec.provenance.note = std::move(note);
+  return spec;
+}
+
+Table list_of(AltaRows rows, TableSpec spec, const std::string& name) {
   const AltaParametrisation& in = alta_parametrisation(rows.required("PARAM_IN", name), name);
   if (rows.inputs != in.dimension) {
     throw InputError(name + ": #DIM says " + std::to_string(rows.inputs) + " coordinates; " +
                      std::string(in.name) + " has " + std::to_string(in.dimension));
   }
-  std::string note(in.assumed);
-  TableSpec spec{{}, channels_of(rows, name, note), {}, {}};
-  if (rows.has_intervals) add(note, "intervals of confidence were left out");
+  add(spec.provenance.note, in.assumed);
+  if (rows.has_intervals) add(spec.provenance.note, "intervals of confidence were left out");
   PairList list{{}, in.isotropic};
   list.pairs.reserve(rows.count());
   std::vector<double> values;
@@ -84,7 +92,6 @@ Table list_of(AltaRows rows, const std::string& name) {
   }
   rows = {};
   spec.samples = std::move(list);
-  spec.provenance.note = std::move(note);
   std::vector<std::uint8_t> valid(spec.cell_count());
   for (std::size_t cell = 0; cell < valid.size(); ++cell) {
     valid[cell] = spec.node_above_horizon(cell) ? 1 : 0;
@@ -100,6 +107,14 @@ void require_same(const std::string& name, const std::string& key, const std::st
                    std::string(described));
 }
 
+void check_description(const AltaRows& rows, const TableSpec& spec, const std::string& name) {
+  const AltaLayout layout(spec);
+  require_same(name, "PARAM_IN", rows.required("PARAM_IN", name), layout.parametrisation());
+  require_same(name, "PARAM_OUT", rows.required("PARAM_OUT", name), layout.output());
+  require_same(name, "DIM", std::to_string(rows.inputs) + " " + std::to_string(rows.outputs),
+               std::to_string(layout.dimension()) + " " + std::to_string(spec.channels.size()));
+}
+
 // Cells of a described table that no row may leave out: those above the horizon, of a cloth that
 // was computed.
 bool may_be_missing(const TableSpec& spec, const AltaLayout& layout, std::size_t cell) {
@@ -108,10 +123,6 @@ bool may_be_missing(const TableSpec& spec, const AltaLayout& layout, std::size_t
 
 Table grid_of(const AltaRows& rows, TableSpec spec, const std::string& name) {
   const AltaLayout layout(spec);
-  require_same(name, "PARAM_IN", rows.required("PARAM_IN", name), layout.parametrisation());
-  require_same(name, "PARAM_OUT", rows.required("PARAM_OUT", name), layout.output());
-  require_same(name, "DIM", std::to_string(rows.inputs) + " " + std::to_string(rows.outputs),
-               std::to_string(layout.dimension()) + " " + std::to_string(spec.channels.size()));
   const std::size_t cells = spec.cell_count();
   if (cells / kMostCellsPerRow > rows.count()) {
     throw InputError(name + ": " + std::to_string(rows.count()) + " samples are too few for " +
@@ -150,9 +161,14 @@ Table read_alta(const std::filesystem::path& path) {
   const std::string name = path.string();
   AltaRows rows = parse_alta(file_bytes(path), name);
   const auto description = rows.keys.find("CLOTHBRDF");
-  if (description == rows.keys.end()) return list_of(std::move(rows), name);
+  if (description == rows.keys.end()) {
+    TableSpec spec = foreign_spec(rows, name);
+    return list_of(std::move(rows), std::move(spec), name);
+  }
   TableSpec spec = parse_table_metadata(description->second, name + ": #CLOTHBRDF");
-  return grid_of(rows, std::move(spec), name);
+  check_description(rows, spec, name);
+  if (spec.has_grid()) return grid_of(rows, std::move(spec), name);
+  return list_of(std::move(rows), std::move(spec), name);
 }
 
 }  // namespace clothbrdf

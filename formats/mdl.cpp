@@ -86,8 +86,7 @@ Layout mdl_layout(const TableSpec& spec, const WriteOptions& options) {
 // The four pairs that a node stands for: both orders, and their mirror images.
 constexpr std::size_t kPairsOfNode = 4;
 
-std::array<Directions, kPairsOfNode> pairs_of_node(const MdlSizes& sizes, std::size_t node) {
-  const DirectionPair pair = sizes.pair(node);
+std::array<Directions, kPairsOfNode> pairs_of_node(const DirectionPair& pair) {
   const Vector3<double> i = direction(pair.theta_i, 0.0);
   const Vector3<double> o = direction(pair.theta_o, 0.0);
   const auto at = [&](const Vector3<double>& v) { return turned(v, sincosd(pair.phi_o)); };
@@ -104,6 +103,12 @@ float as_float(double value, const std::string& channel, const DirectionPair& pa
                   number_text(pair.phi_o) + ", beyond the largest 32-bit float");
 }
 
+// theta_i and theta_o of two rows of nodes, which hold the same values.
+struct RowPair {
+  std::size_t i;
+  std::size_t o;
+};
+
 void write_mdl(const Producer& producer, AtomicFile& file, const WriteOptions& options) {
   constexpr std::size_t kNodesOfBlock = 32768;
   const TableSpec& spec = producer.spec();
@@ -114,34 +119,52 @@ void write_mdl(const Producer& producer, AtomicFile& file, const WriteOptions& o
   const std::string header = header_text(spec);
   file.write_at(0, std::as_bytes(std::span(header)));
   file.write_at(header.size(), std::as_bytes(std::span(&sizes, 1)));
+
+  const std::size_t rows_of_block = std::max<std::size_t>(1, kNodesOfBlock / sizes.phi);
+  std::vector<RowPair> rows;
   std::vector<Directions> pairs;
   std::vector<double> values;
-  std::vector<float> stored;
-  for (std::size_t first = 0; first < sizes.node_count(); first += kNodesOfBlock) {
-    const std::size_t nodes = std::min(kNodesOfBlock, sizes.node_count() - first);
+  std::vector<float> stored(sizes.phi * channels);
+  const auto first_node = [&](std::size_t i, std::size_t o) { return (i * n + o) * sizes.phi; };
+  const auto write_row = [&](std::size_t i, std::size_t o) {
+    file.write_at(header.size() + sizeof sizes + first_node(i, o) * channels * sizeof(float),
+                  std::as_bytes(std::span(stored)));
+  };
+  const auto write_rows = [&] {
     pairs.clear();
-    for (std::size_t node = first; node < first + nodes; ++node) {
-      const auto of_node = pairs_of_node(sizes, node);
-      pairs.insert(pairs.end(), of_node.begin(), of_node.end());
+    for (const RowPair& row : rows) {
+      for (std::size_t phi = 0; phi < sizes.phi; ++phi) {
+        const auto of_node = pairs_of_node(sizes.pair(first_node(row.i, row.o) + phi));
+        pairs.insert(pairs.end(), of_node.begin(), of_node.end());
+      }
     }
     values.resize(pairs.size() * channels);
     fill_all_pairs(producer, options.workers, pairs, values);
-    stored.clear();
-    for (std::size_t node = 0; node < nodes; ++node) {
-      for (std::size_t c = 0; c < channels; ++c) {
-        const auto value = [&](std::size_t k) {
-          return values[(node * kPairsOfNode + k) * channels + c];
-        };
-        // In pairs of both orders, so that the two nodes of one pair hold the same bits.
-        const double mean = ((value(0) + value(1)) + (value(2) + value(3))) / 4;
-        stored.push_back(
-            as_float(mean, spec.channels[c].name, sizes.pair(first + node), file.name().string()));
+    std::span<const double> left = values;
+    for (const RowPair& row : rows) {
+      for (std::size_t k = 0; k < stored.size(); ++k) {
+        const std::size_t phi = k / channels;
+        const std::size_t c = k % channels;
+        const std::span<const double> node = left.subspan(phi * kPairsOfNode * channels + c);
+        double sum = 0;
+        for (std::size_t p = 0; p < kPairsOfNode; ++p) sum += node[p * channels];
+        stored[k] = as_float(sum / kPairsOfNode, spec.channels[c].name,
+                             sizes.pair(first_node(row.i, row.o) + phi), file.name().string());
       }
+      left = left.subspan(sizes.phi * kPairsOfNode * channels);
+      write_row(row.i, row.o);
+      if (row.i != row.o) write_row(row.o, row.i);
+      options.workers.advance(sizes.phi * (row.i == row.o ? 1 : 2));
     }
-    file.write_at(header.size() + sizeof sizes + first * channels * sizeof(float),
-                  std::as_bytes(std::span(stored)));
-    options.workers.advance(nodes);
+    rows.clear();
+  };
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t o = i; o < n; ++o) {
+      rows.push_back({i, o});
+      if (rows.size() == rows_of_block) write_rows();
+    }
   }
+  write_rows();
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "formats/file_bytes.h"
+#include "formats/format_colours.h"
 #include "formats/json_text.h"
 #include "support/errors.h"
 
@@ -211,7 +212,7 @@ Table read_mdl(const std::filesystem::path& path) {
     list.pairs.push_back(sizes.pair(node));
   }
   TableSpec spec{std::move(list), rgb_channels(), {}, {}};
-  if (sizes.type == 0) spec.channels = {{"mono", Part::kTotal, 0}};
+  if (sizes.type == 0) spec.channels = {{kMono, Part::kTotal, 0}};
   spec.provenance.note = std::move(note);
   std::vector<double> values(stored.begin(), stored.end());
   std::vector<std::uint8_t> valid(sizes.node_count(), 1);

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <filesystem>
 
-#include "model/directions.h"
 #include "table/table.h"
 
 namespace clothbrdf {

@@ -241,7 +241,8 @@ TEST_CASE("lists of pairs are written to ALTA files and read back, first bytes o
       for (int c = 0; c < 3; ++c) values.push_back(random.log_uniform(1e-300, 1e300));
     }
     const std::size_t count = list.pairs.size();
-    const TableSpec spec{list, rgb_channels(), {}, {}};
+    const Material material = random.material({});
+    const TableSpec spec = material_spec(material, {}, list);
     const Table table(spec, values, std::vector<std::uint8_t>(count, 1));
     for (const char* const name : {"t.alta", "t.dat"}) {
       write_table(table, folder / name);
@@ -251,6 +252,8 @@ TEST_CASE("lists of pairs are written to ALTA files and read back, first bytes o
       const Table back = read_table(folder / name);
       REQUIRE(back.spec().has_pairs());
       REQUIRE(back.spec().isotropic() == isotropic);
+      REQUIRE(back.spec().channels == spec.channels);
+      REQUIRE(back.spec().provenance == spec.provenance);
       REQUIRE(back.spec().provenance.note.empty());
       REQUIRE(std::equal(back.values().begin(), back.values().end(), values.begin(), values.end()));
       for (std::size_t k = 0; k < count; ++k) {
