@@ -308,7 +308,7 @@ TEST_CASE("what is not an ALTA file, or not of f_r, is refused in one line") {
   const std::string rgb = "RGB_COLOR";
   refused("", "#DIM is missing");
   refused("some text\n", "#DIM is missing");
-  refused("#DIM 1 3\n1 2 3 4\n", "#PARAM_IN is missing");
+  refused("#DIM 1 3\n#PARAM_OUT RGB_COLOR\n1 2 3 4\n", "#PARAM_IN is missing");
   refused("#DIM 1 3\n#PARAM_IN COS_TH\n1 2 3 4\n", "#PARAM_OUT is missing");
   refused(with("1 3", "COS_TH", rgb, "", ""), "no samples");
   refused(with("one 3", "COS_TH", rgb, "", "1 2 3 4\n"), "#DIM is 'one 3'");
