@@ -8,15 +8,20 @@
 #include <cstring>
 #include <string>
 
+#include "formats/alta.h"
 #include "formats/exr.h"
 #include "formats/format_colours.h"
+#include "formats/mdl.h"
 #include "formats/merl.h"
 #include "formats/rgl.h"
+#include "formats/utia.h"
 #include "support/errors.h"
 
 namespace clothbrdf {
 std::span<const Format> formats() {
-  static const Format kFormats[] = {merl_format(), exr_format(), rgl_format()};
+  static const Format kFormats[] = {merl_format(), exr_format(),         rgl_format(),
+                                    utia_format(), linear_utia_format(), mdl_format(),
+                                    alta_format(), alta_binary_format()};
   return kFormats;
 }
 
