@@ -10,7 +10,9 @@
 #include <string>
 
 #include "formats/exr.h"
+#include "formats/klems.h"
 #include "formats/merl.h"
+#include "formats/tensor_tree_xml.h"
 #include "support/errors.h"
 
 namespace clothbrdf {
@@ -39,7 +41,8 @@ void check_colours(const Format& format, const TableSpec& spec, const WriteOptio
 }  // namespace
 
 std::span<const Format> formats() {
-  static const Format kFormats[] = {merl_format(), exr_format()};
+  static const Format kFormats[] = {merl_format(), exr_format(), klems_format(),
+                                    tensor_tree_format()};
   return kFormats;
 }
 
