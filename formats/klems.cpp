@@ -119,7 +119,7 @@ void write_klems(const Producer& producer, AtomicFile& file, const WriteOptions&
         const std::size_t light = opposite(basis, column);
         const Tristimulus xyz = to_tristimulus(means[light * basis.size() + eye]);
         // Saturated colours may round to a negative one; readers make it 0.
-        out.number(std::max(0.0, xyz.*component), 0);
+        out.text(NumberString(std::max(0.0, xyz.*component)).view());
         out.text(column + 1 < basis.size() ? "," : "\n");
       }
     }

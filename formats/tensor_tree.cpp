@@ -15,6 +15,8 @@ namespace {
 constexpr std::size_t kChildren = 16;
 // Every box is cut so often, lest a narrow lobe be missed.
 constexpr int kSureDepth = 4;
+// Subtrees from here on are built in parallel.
+constexpr int kTaskDepth = 3;
 
 struct Place {
   int depth = 0;
@@ -182,54 +184,60 @@ void prune_boxes(Boxes& boxes, double error) {
   };
   keep(keep, 0);
   boxes.resize(kept);
-  boxes.shrink_to_fit();
+  if (boxes.size() < boxes.capacity() / 2) boxes.shrink_to_fit();
 }
 
 }  // namespace
 
 BoxTree BoxTree::build(const Producer& producer, const Workers& workers, const Limits& limits) {
+  constexpr std::size_t kParts = kChildren * kChildren * kChildren;
+  // A round of parts fits into memory however finely they are cut.
+  constexpr std::size_t kRound = 64;
   const CellRules rules(limits.depth);
   Limits now = limits;
-  // Subtrees of the root's children's children, in their order.
-  std::vector<Boxes> parts(kChildren * kChildren);
+  std::vector<Boxes> parts(kParts);
   std::size_t total = 0;
-  for (std::size_t n = 0; n < kChildren; ++n) {
-    const Place parent = Place{}.child(n);
+  for (std::size_t first = 0; first < kParts; first += kRound) {
     with_threads(workers.threads, [&] {
-      tbb::parallel_for(std::size_t{0}, kChildren, [&](std::size_t k) {
-        Boxes& part = parts[n * kChildren + k];
-        Builder(producer, workers, rules, now).build(parent.child(k), part);
-        prune_boxes(part, now.error);
+      tbb::parallel_for(first, first + kRound, [&](std::size_t k) {
+        const Place place = Place{}.child(k >> 8U).child(k >> 4U & 15U).child(k & 15U);
+        Builder(producer, workers, rules, now).build(place, parts[k]);
+        prune_boxes(parts[k], now.error);
       });
     });
-    for (std::size_t k = 0; k < kChildren; ++k) total += parts[n * kChildren + k].size();
-    while (total > limits.boxes) {
+    for (std::size_t k = first; k < first + kRound; ++k) total += parts[k].size();
+    while (total > std::max(limits.boxes, kParts)) {
       now.error *= 1.25;
       total = 0;
-      for (Boxes& part : parts) {
-        if (!part.empty()) prune_boxes(part, now.error);
-        total += part.size();
+      for (std::size_t k = 0; k < first + kRound; ++k) {
+        prune_boxes(parts[k], now.error);
+        total += parts[k].size();
       }
     }
   }
   BoxTree tree;
-  tree.boxes_.reserve(total + kChildren + 1);
-  tree.boxes_.emplace_back();
-  for (std::size_t n = 0; n < kChildren; ++n) {
+  tree.error_ = now.error;
+  tree.boxes_.reserve(total + kParts / 8);
+  std::size_t next = 0;
+  const auto assemble = [&](const auto& self, int depth) -> void {
+    if (depth == kTaskDepth) {
+      tree.boxes_.insert(tree.boxes_.end(), parts[next].begin(), parts[next].end());
+      Boxes().swap(parts[next++]);
+      return;
+    }
     const std::size_t parent = tree.boxes_.size();
     tree.boxes_.emplace_back();
-    for (std::size_t k = 0; k < kChildren; ++k) {
-      Boxes& part = parts[n * kChildren + k];
-      tree.boxes_.insert(tree.boxes_.end(), part.begin(), part.end());
-      Boxes().swap(part);
-    }
+    for (std::size_t n = 0; n < kChildren; ++n) self(self, depth + 1);
     summarise(tree.boxes_, parent);
-  }
-  summarise(tree.boxes_, 0);
+  };
+  assemble(assemble, 0);
   prune_boxes(tree.boxes_, now.error);
   return tree;
 }
 
-void BoxTree::prune(double error) { prune_boxes(boxes_, error); }
+void BoxTree::prune(double error) {
+  prune_boxes(boxes_, error);
+  error_ = std::max(error_, error);
+}
 
 }  // namespace clothbrdf

@@ -24,13 +24,13 @@ class BoxTree {
   };
 
   struct Limits {
-    int depth = 6;        ///< cuts of an axis at most: 2^depth boxes; 4 at least
-    double error = 0.02;  ///< boxes whose children are closer are not cut
-    std::size_t boxes = std::size_t{1} << 22U;  ///< at most; the error grows until they suffice
+    int depth = 7;          ///< cuts of an axis at most, 2^depth boxes; from 4
+    double error = 0;       ///< boxes whose children are closer to their mean are not cut
+    std::size_t boxes = 0;  ///< at most, but from 4369; the error grows until they suffice
   };
 
-  /// Counts 16^depth cells into the workers' progress. 20 bytes a box; the same tree for any number
-  /// of threads.
+  /// Counts 16^depth cells into the workers' progress. The same tree for any number of threads.
+  /// Memory: 40 bytes for each box allowed and 100 MB.
   static BoxTree build(const Producer& producer, const Workers& workers, const Limits& limits);
 
   /// Takes the children of boxes that are all within `error` of the means of theirs: relative to
@@ -38,9 +38,12 @@ class BoxTree {
   void prune(double error);
 
   const std::vector<Box>& boxes() const { return boxes_; }
+  /// What was cut farther than this, is whole; no box left whole has parts farther from its mean.
+  double error() const { return error_; }
 
  private:
   std::vector<Box> boxes_;
+  double error_ = 0;
 };
 
 }  // namespace clothbrdf

@@ -97,6 +97,11 @@ std::string NumberText::next_words() {
   return rest_.empty() ? "the end" : quoted(rest_.substr(0, 20));
 }
 
+NumberString::NumberString(double value) : end_(std::to_chars(text_, std::end(text_), value).ptr) {}
+
+NumberString::NumberString(double value, int digits)
+    : end_(std::to_chars(text_, std::end(text_), value, std::chars_format::general, digits).ptr) {}
+
 WindowFile::WindowFile(const std::filesystem::path& path) : name_(path.string()) {
   require_readable(path);
   std::ifstream in(path, std::ios::binary | std::ios::ate);
@@ -198,14 +203,6 @@ void WindowWriter::end_block() {
 void WindowWriter::text(std::string_view text) {
   if (buffer_.size() + text.size() > kBufferBytes) flush();
   buffer_ += text;
-}
-
-void WindowWriter::number(double value, int digits) {
-  char number[32];
-  const std::to_chars_result end = digits == 0 ? std::to_chars(number, std::end(number), value)
-                                               : std::to_chars(number, std::end(number), value,
-                                                               std::chars_format::general, digits);
-  text({number, static_cast<std::size_t>(end.ptr - number)});
 }
 
 // No line's end at the last: every byte counts, and a file cut off is found out.

@@ -39,6 +39,18 @@ class NumberText {
   std::string_view rest_;
 };
 
+/// A number's text: with at most so many significant digits, or as few as bring the double back.
+class NumberString {
+ public:
+  explicit NumberString(double value);
+  NumberString(double value, int digits);
+  std::string_view view() const { return {text_, static_cast<std::size_t>(end_ - text_)}; }
+
+ private:
+  char text_[32];
+  const char* end_;
+};
+
 /// The data of one spectrum: its name in the file is Visible, CIE-X and so on.
 struct ScatteringBlock {
   std::string_view numbers;
@@ -83,8 +95,6 @@ class WindowWriter {
   void begin_block(std::string_view spectrum, std::string_view bases);
   void end_block();
   void text(std::string_view text);
-  /// With at most so many significant digits; as few as bring the double back where 0.
-  void number(double value, int digits);
   /// The last call.
   void finish();
 
