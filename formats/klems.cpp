@@ -163,8 +163,9 @@ const KlemsBasis& basis_of(const WindowFile& file, std::string_view name, const 
 std::vector<double> read_matrix(const WindowFile& file, const char* spectrum, std::size_t count) {
   NumberText text(file.find(spectrum)->numbers);
   std::vector<double> numbers;
-  while (const std::optional<double> number = text.number()) {
-    if (numbers.size() == count) break;
+  while (numbers.size() < count) {
+    const std::optional<double> number = text.number();
+    if (!number) break;
     numbers.push_back(*number < 0 ? 0 : *number);
   }
   if (numbers.size() < count || text.peek() != '\0') {

@@ -66,20 +66,18 @@ class AdaptivePairMean {
 
   /// Cuts at most `cuts` times; takes what it used from `cuts`.
   Rgb refine(const Ruled& light, const Ruled& eye, std::size_t& cuts) {
-    parts_.assign(1, part(light, eye, 1));
-    while (true) {
-      Rgb mean{};
-      Rgb error{};
-      for (const Part& p : parts_) {
-        for (std::size_t c = 0; c < mean.size(); ++c) {
-          mean[c] += p.mean[c];
-          error[c] += p.error[c];
-        }
-      }
-      if (cuts == 0 || close(mean, error)) return mean;
+    parts_.clear();
+    total_ = {};
+    add(part(light, eye, 1));
+    while (cuts > 0 && !close(total_.mean, total_.error)) {
       --cuts;
-      cut(worst(mean));
+      cut(take_worst());
     }
+    Rgb mean{};
+    for (const Part& p : parts_) {
+      for (std::size_t c = 0; c < mean.size(); ++c) mean[c] += p.mean[c];
+    }
+    return mean;
   }
 
  private:
@@ -90,6 +88,7 @@ class AdaptivePairMean {
     double share;
     Rgb mean;
     Rgb error;
+    double urgency = 0;
   };
 
   Part part(const Ruled& light, const Ruled& eye, double share) {
@@ -110,27 +109,30 @@ class AdaptivePairMean {
     return true;
   }
 
-  // Takes out the part with the largest error relative to the whole.
-  Part worst(const Rgb& mean) {
-    const auto size = [&](const Part& p) {
-      double largest = 0;
-      for (std::size_t c = 0; c < mean.size(); ++c) {
-        if (mean[c] != 0) largest = std::max(largest, p.error[c] / std::abs(mean[c]));
-      }
-      return largest;
-    };
-    std::size_t found = 0;
-    double largest = -1;
-    for (std::size_t k = 0; k < parts_.size(); ++k) {
-      const double s = size(parts_[k]);
-      if (s > largest) {
-        largest = s;
-        found = k;
-      }
+  // The parts are a heap by their errors, relative to the whole as known when they were added.
+  static bool less_urgent(const Part& a, const Part& b) { return a.urgency < b.urgency; }
+
+  void add(Part p) {
+    for (std::size_t c = 0; c < p.mean.size(); ++c) {
+      total_.mean[c] += p.mean[c];
+      total_.error[c] += p.error[c];
     }
-    Part taken = parts_[found];
-    parts_[found] = parts_.back();
+    for (std::size_t c = 0; c < p.mean.size(); ++c) {
+      const double whole = std::abs(total_.mean[c]);
+      if (whole > 0) p.urgency = std::max(p.urgency, p.error[c] / whole);
+    }
+    parts_.push_back(p);
+    std::push_heap(parts_.begin(), parts_.end(), less_urgent);
+  }
+
+  Part take_worst() {
+    std::pop_heap(parts_.begin(), parts_.end(), less_urgent);
+    const Part taken = parts_.back();
     parts_.pop_back();
+    for (std::size_t c = 0; c < taken.mean.size(); ++c) {
+      total_.mean[c] -= taken.mean[c];
+      total_.error[c] -= taken.error[c];
+    }
     return taken;
   }
 
@@ -143,7 +145,7 @@ class AdaptivePairMean {
     for (const Ruled& light : lights) {
       for (const Ruled& eye : eyes) {
         const double share = light.region.measure() * eye.region.measure() / total * whole.share;
-        parts_.push_back(part(light, eye, share));
+        add(part(light, eye, share));
       }
     }
   }
@@ -151,6 +153,7 @@ class AdaptivePairMean {
   PairSum sum_;
   double tolerance_;
   std::vector<Part> parts_;
+  Estimate total_;  // of the parts
 };
 
 }  // namespace clothbrdf
