@@ -155,7 +155,7 @@ TEST_CASE("a tensor tree holds the means of its boxes, where its readers look") 
   std::uniform_real_distribution<double> anywhere(0, 1);
   double worst = 0;
   double worst_colour = 0;
-  Point place{};
+  double worst_at_horizon = 0;
   std::array<int, 8> of_depth{};
   for (int k = 0; k < 400; ++k) {
     const Point p = {anywhere(random), anywhere(random), anywhere(random), anywhere(random)};
@@ -165,10 +165,12 @@ TEST_CASE("a tensor tree holds the means of its boxes, where its readers look") 
     for (double& x : low) x = std::floor(x / width) * width;
     const std::array<double, 3> exact = dense_mean(*producer, low, width, 24);
     const double error = std::abs(found / luminance(exact) - 1);
-    if (error > worst) {
-      worst = error;
-      place = p;
-    }
+    const auto high = [](double a, double b) {
+      return std::max(std::abs(2 * a - 1), std::abs(2 * b - 1)) >
+             std::sin(75 * std::numbers::pi / 180);
+    };
+    double& of_kind = high(p[0], p[1]) && high(p[2], p[3]) ? worst_at_horizon : worst;
+    of_kind = std::max(of_kind, error);
     const double X = (0.4124 * exact[0] + 0.3576 * exact[1] + 0.1805 * exact[2]) / 0.9505;
     const double Z = (0.0193 * exact[0] + 0.1192 * exact[1] + 0.9505 * exact[2]) / 1.0890;
     const double sum = X + 15 * luminance(exact) + 3 * Z;
@@ -176,10 +178,11 @@ TEST_CASE("a tensor tree holds the means of its boxes, where its readers look") 
                              std::abs(v.at(p) - 9 * luminance(exact) / sum)});
     ++of_depth[static_cast<std::size_t>(std::lround(-std::log2(width)))];
   }
-  WARN("worst relative error of a mean " << worst << " at " << place[0] << ' ' << place[1] << ' '
-                                         << place[2] << ' ' << place[3] << ", of u' and v' "
-                                         << worst_colour);
-  CHECK(worst <= 0.01);
+  WARN("worst relative error of a mean " << worst << ", with light and eye beyond 75 degrees "
+                                         << worst_at_horizon << ", of u' and v' " << worst_colour);
+  CHECK(worst <= 0.003);
+  // Where light and eye meet at the horizon, f_r has a pole that four points do not follow.
+  CHECK(worst_at_horizon <= 0.03);
   CHECK(worst_colour <= 5e-4);
   for (std::size_t depth = 2; depth < 6; ++depth) {
     INFO("depth " << depth);
