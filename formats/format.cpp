@@ -11,17 +11,20 @@
 #include "formats/alta.h"
 #include "formats/exr.h"
 #include "formats/format_colours.h"
+#include "formats/klems.h"
 #include "formats/mdl.h"
 #include "formats/merl.h"
 #include "formats/rgl.h"
+#include "formats/tensor_tree_xml.h"
 #include "formats/utia.h"
 #include "support/errors.h"
 
 namespace clothbrdf {
+
 std::span<const Format> formats() {
-  static const Format kFormats[] = {merl_format(), exr_format(),         rgl_format(),
-                                    utia_format(), linear_utia_format(), mdl_format(),
-                                    alta_format(), alta_binary_format()};
+  static const Format kFormats[] = {
+      merl_format(), exr_format(),  rgl_format(),         utia_format(),  linear_utia_format(),
+      mdl_format(),  alta_format(), alta_binary_format(), klems_format(), tensor_tree_format()};
   return kFormats;
 }
 
