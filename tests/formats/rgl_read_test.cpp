@@ -249,7 +249,7 @@ TEST_CASE("an RGL file that contradicts itself is refused in one line") {
                                                                    ContainsSubstring(part) &&
                                                                    !ContainsSubstring("\n"));
   };
-  const auto floats = [](const std::string& name, Shape shape, std::vector<float> values) {
+  const auto floats = [](const std::string& name, Shape shape, const std::vector<float>& values) {
     return tensor_of(name, 10, std::move(shape), values);
   };
   const float nan = std::nanf("");
@@ -296,7 +296,8 @@ TEST_CASE("measured green felt has its known albedo") {
   const int n = 200;
   for (int k = 0; k < n * n; ++k) {
     // Midpoints of equal parts of the projected solid angle.
-    const double sin_theta = std::sqrt((k / n + 0.5) / n);
+    const int row = k / n;
+    const double sin_theta = std::sqrt((row + 0.5) / n);
     const double phi = 2 * kPi * (k % n + 0.5) / n;
     const std::vector<double> f =
         f_at(table, {{sin_theta * std::cos(phi), sin_theta * std::sin(phi),

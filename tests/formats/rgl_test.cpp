@@ -267,7 +267,7 @@ TEST_CASE("a spectral RGL file holds the wavelengths of its table") {
   const WriteOptions options{.flavour = Flavour::kSpectral, .bytes = 3000000};
   write_table(*exact, folder / "t.bsdf", options);
   const auto fields = strict_fields(read_file(folder / "t.bsdf"));
-  CHECK(fields.count("rgb") == 0);
+  CHECK(!fields.contains("rgb"));
   CHECK(floats_of(fields.at("wavelengths")) ==
         std::vector<float>{400, 416.6666667F, 500, 600.5, 700});
   const Table table = read_back(folder / "t.bsdf");

@@ -19,7 +19,7 @@ class StrictRgl {
     for (const auto& [name, field] : fields_) {
       if (field.type == 10) values_[name] = floats_of(field);
     }
-    color_ = fields_.count("spectra") != 0 ? "spectra" : "rgb";
+    color_ = fields_.contains("spectra") ? "spectra" : "rgb";
   }
 
   const TensorBytes& field(const std::string& name) const { return fields_.at(name); }
@@ -31,8 +31,8 @@ class StrictRgl {
     const double pi = std::acos(-1.0);
     double m[3];
     double length = 0;
-    for (int a = 0; a < 3; ++a) length += std::pow(light[a] + eye[a], 2);
-    for (int a = 0; a < 3; ++a) m[a] = (light[a] + eye[a]) / std::sqrt(length);
+    for (std::size_t a = 0; a < 3; ++a) length += std::pow(light[a] + eye[a], 2);
+    for (std::size_t a = 0; a < 3; ++a) m[a] = (light[a] + eye[a]) / std::sqrt(length);
     const auto u_of = [&](double x, double y, double z, double u[2]) {
       u[0] = std::sqrt(2 * angle_from_normal(x, y, z) / pi);
       u[1] = (std::atan2(y, x) + pi) / (2 * pi);

@@ -71,7 +71,8 @@ TEST_CASE("a warp's density is that of its samples, and adds up to 1") {
   double sum = 0;
   const int n = 400;
   for (int k = 0; k < n * n; ++k) {
-    sum += warp.density({(k % n + 0.5) / n, (k / n + 0.5) / n}, blend) / (n * n);
+    const int row = k / n;
+    sum += warp.density({(k % n + 0.5) / n, (row + 0.5) / n}, blend) / (n * n);
   }
   CHECK(std::abs(sum - 1) <= 1e-4);
 }
