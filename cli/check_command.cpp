@@ -62,6 +62,7 @@ std::string albedo_text(const TableSpec& spec, const Albedo& a) {
 /// One line for each thing that is wrong.
 std::vector<std::string> problems(const TableSpec& spec, const TableCheck& check) {
   std::vector<std::string> found;
+  if (check.valid == 0) found.emplace_back("no cell is valid: nothing was measured");
   if (check.not_finite.count > 0) {
     found.push_back("not finite: " + flaw_text(spec, check.not_finite, "the first is"));
   }

@@ -22,7 +22,12 @@ bool holds_components(const TableSpec& spec) {
 std::vector<Samples> candidates(const TableSpec& source, const Format& format,
                                 const ConversionWish& wish) {
   const auto& material = source.provenance.material;
-  const Reflectance reflectance = material ? material->reflectance : Reflectance::kMicrofacet;
+  // Whether f(wi, wo) is f(wo, wi) is not known of a table that holds both.
+  const bool both_orders = !source.has_grid() || source.grid().kind == GridKind::kInOut ||
+                           source.grid().axes.back().highest_deg > 180;
+  const Reflectance reflectance = material      ? material->reflectance
+                                  : both_orders ? Reflectance::kPaper
+                                                : Reflectance::kMicrofacet;
   const bool isotropic = wish.isotropic || source.isotropic();
   const Samples standard = format.default_samples(reflectance, isotropic);
   if (wish.grid) {
@@ -151,7 +156,6 @@ std::optional<ChannelDifference> run_conversion(const Table& source, const Conve
                               "cells");
     }
     write_table(*conversion.format, producer, file, wish.write);
-    file.commit();
   };
   std::optional<Table> totals;
   if (holds_components(source.spec()) && !holds_components(target)) {
@@ -159,13 +163,21 @@ std::optional<ChannelDifference> run_conversion(const Table& source, const Conve
   }
   const Table& from = totals ? *totals : source;
   if (std::holds_alternative<AnyPairs>(target.samples)) {
-    write(TablePairs(from, target.isotropic()));
-    conversion.compared_at = "at random pairs, as the file is read";
-    return worst_of(
-        compare_with_file(conversion.format->read(wish.out), from, *conversion.format, wish.write));
+    const TablePairs pairs(from, target.isotropic());
+    write(pairs);
+    if (pairs.unanswered() > 0) {
+      conversion.lost.push_back("what was not measured: " + with_commas(pairs.unanswered()) +
+                                " pairs, of which the source says nothing, hold 0");
+    }
+    conversion.compared_at = "at random pairs below 85 degrees, as the file is read";
+    const ChannelDifference worst = worst_of(compare_with_file(
+        conversion.format->read(file.readable()), from, *conversion.format, wish.write));
+    file.commit();
+    return worst;
   }
   if (target.samples == from.spec().samples) {
     write(from);
+    file.commit();
     return std::nullopt;
   }
   const Table resampled = resample(from, target.samples, workers);
@@ -177,6 +189,7 @@ std::optional<ChannelDifference> run_conversion(const Table& source, const Conve
   conversion.compared_at = "at the old nodes";
   const ChannelDifference worst = worst_of(compare(from, resampled, workers));
   write(resampled);
+  file.commit();
   return worst;
 }
 

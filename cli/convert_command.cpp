@@ -43,7 +43,12 @@ void report(const ConvertOptions& options, const ConversionWish& wish, const Con
                  {"channels", channels},
                  {"bytes", bytes},
                  {"lost", conversion.lost}};
-    if (error) json["error"] = {{"rms", error->rms}, {"p99", error->p99}, {"max", error->max}};
+    if (error) {
+      json["error"] = {{"at", conversion.compared_at},
+                       {"rms", error->rms},
+                       {"p99", error->p99},
+                       {"max", error->max}};
+    }
     std::cout << json.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
     return;
   }
@@ -52,7 +57,7 @@ void report(const ConvertOptions& options, const ConversionWish& wish, const Con
             << with_commas(bytes) << " bytes, from " << options.in << '\n';
   for (const std::string& what : conversion.lost) std::cout << "  lost: " << what << '\n';
   if (error) {
-    std::cout << std::setprecision(3) << "  error " << conversion.compared_at << ": rms "
+    std::cout << std::setprecision(3) << "  relative error " << conversion.compared_at << ": rms "
               << error->rms << ", p99 " << error->p99 << ", max " << error->max << '\n';
   }
   if (conversion.lost.empty()) std::cout << "  lost: nothing\n";
@@ -60,13 +65,14 @@ void report(const ConvertOptions& options, const ConversionWish& wish, const Con
 
 void convert(const ConvertOptions& options) {
   const int threads = threads_of(options.threads);
-  format_for(options.out);  // before a large table is read
+  // Before a large table is read.
+  format_for(options.out);
+  const std::vector<FileToWrite> files = files_to_write(options.out, options.file);
+  if (files.size() > 1) throw InputError("--flavour: 'both' is not for convert: rgb or spectral");
   const Table source = read_table(options.in);
   ProgressBar bar;
   ConversionWish wish{
       .out = options.out, .grid = options.grid, .isotropic = options.isotropic, .write = {}};
-  const std::vector<FileToWrite> files = files_to_write(options.out, options.file);
-  if (files.size() > 1) throw InputError("--flavour: 'both' is not for convert: rgb or spectral");
   wish.write = files.front().options;
   wish.write.workers = {threads, &bar.progress()};
   Conversion conversion = plan_conversion(source, wish);

@@ -54,7 +54,7 @@ bool same_channels(std::span<const Channel> of_table, std::span<const Channel> o
   const auto same = [](const Channel& a, const Channel& b) {
     const std::optional<double> nm_a = named_wavelength(a.name);
     const std::optional<double> nm_b = named_wavelength(b.name);
-    if (!nm_a || !nm_b) return a == b;
+    if (!nm_a || !nm_b) return a.part == b.part && a.name == b.name;
     return a.part == b.part && static_cast<float>(*nm_a) == static_cast<float>(*nm_b);
   };
   return std::equal(of_table.begin(), of_table.end(), of_file.begin(), of_file.end(), same);

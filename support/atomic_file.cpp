@@ -158,6 +158,10 @@ void AtomicFile::link_to_target() {
   fail("cannot write", errno);
 }
 
+std::filesystem::path AtomicFile::readable() const {
+  return "/proc/self/fd/" + std::to_string(fd_);
+}
+
 void AtomicFile::commit() {
   if (hidden_.empty()) link_to_target();
   // Before the rename: on a network file system closing tells of bytes that never arrived.

@@ -36,6 +36,9 @@ class AtomicFile {
   void write_at(std::uint64_t offset, std::span<const std::span<const std::byte>> pieces);
   std::uint64_t size() const { return size_; }
 
+  /// A name under which this process can read what was written so far.
+  std::filesystem::path readable() const;
+
   /// Gives the file its name, in place of an older one.
   void commit();
 

@@ -149,7 +149,10 @@ std::vector<double> incident_thetas(const TableSpec& spec) {
 }  // namespace
 
 std::vector<Albedo> albedo_by_theta(const Table& table, const Workers& workers) {
-  if (!table.complete()) return {};
+  bool any = false;
+  for (std::size_t cell = 0; !any && cell < table.spec().cell_count(); ++cell)
+    any = table.valid(cell);
+  if (!any || !table.complete()) return {};
   const bool over_wo = over_outgoing(table.spec());
   std::optional<Table> weighted;
   if (!over_wo) weighted = with_cosines(table);

@@ -85,6 +85,7 @@ void check_values(const Table& table, TableCheck& check) {
     const bool above = spec.node_above_horizon(cell);
     const bool below = spec.has_grid() ? !spec.grid().any_above_horizon(cell) : !above;
     check.below_horizon += below;
+    check.valid += table.valid(cell) ? 1U : 0U;
     check.masked += above && !table.valid(cell);
     for (std::size_t c = 0; c < spec.channels.size(); ++c) {
       const TableValue found{cell, c, table.value(cell, c)};

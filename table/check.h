@@ -38,7 +38,8 @@ struct ReciprocityCheck {
 struct TableCheck {
   std::size_t cells = 0;
   std::size_t below_horizon = 0;  ///< wholly
-  std::size_t masked = 0;         ///< above the horizon, marked as not valid
+  std::size_t valid = 0;
+  std::size_t masked = 0;  ///< above the horizon, marked as not valid
   Flaw not_finite;
   Flaw negative;        ///< in cells above the horizon: by their node or, of averages, by any part
   Flaw below_not_zero;  ///< in cells wholly below it, other than negative marks: a note

@@ -112,6 +112,14 @@ Table isotropic_mean(const Table& source, const Workers& workers) {
   });
 }
 
+// Where tables without a grid are sampled before the mean over rotations is taken: all azimuths of
+// the half vector, both orders of the directions together.
+Grid once_around() {
+  Grid grid = halfdiff4d(45, 72, 45, 45);
+  grid.axes[1].highest_deg = 360;
+  return grid;
+}
+
 }  // namespace
 
 int rotation_count(const TableSpec& source) {
@@ -139,14 +147,17 @@ Table resample(const Table& source, const Samples& samples, const Workers& worke
   // Cheaper than a mean for each node of the target.
   if (isotropic && source.spec().has_grid() && target.has_grid()) {
     mean = isotropic_mean(source, workers);
+  } else if (isotropic && averages_orders(source.spec(), target) && source.complete()) {
+    mean = isotropic_mean(resample(source, once_around(), workers), workers);
   }
   const Table& table = mean ? *mean : source;
   if (table.spec().samples == samples) return table;
   const int rotations = isotropic && !mean ? rotation_count(source.spec()) : 1;
   const std::optional<Material>& material = source.spec().provenance.material;
   const bool reciprocal = material && material->reflectance == Reflectance::kMicrofacet;
-  const bool both_orders = source.spec().has_grid() && tells_orders_apart(source.spec()) &&
-                           (reciprocal || averages_orders(source.spec(), target));
+  const bool both_orders =
+      tells_orders_apart(source.spec()) &&
+      ((reciprocal && source.spec().has_grid()) || averages_orders(source.spec(), target));
   const std::size_t channels = source.spec().channels.size();
   return tabulated(source, samples, workers, "resampling", [&]() -> CellFunction {
     return [&, both = Mean(channels), sample = std::vector<double>(channels)](
@@ -176,7 +187,7 @@ void TablePairs::fill_pairs(std::span<const Directions> pairs, std::span<double>
   std::vector<double> taken;
   for (const Directions& pair : pairs) {
     add_rotations(table_, pair, rotations_, sample, mean);
-    mean.take(taken);
+    if (!mean.take(taken) && pair.above_horizon()) ++unanswered_;
     std::copy(taken.begin(), taken.end(), values.begin());
     values = values.subspan(channels);
   }

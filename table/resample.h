@@ -1,5 +1,7 @@
 #pragma once
 
+#include <atomic>
+
 #include "support/progress.h"
 #include "table/table.h"
 
@@ -36,12 +38,17 @@ class TablePairs final : public Producer {
   TablePairs(const Table& table, bool isotropic);
   const TableSpec& spec() const override { return spec_; }
   void fill_rows(std::size_t first_row, std::span<double> values) const override;  ///< has none
+  /// 0 where the table says nothing, which unanswered() counts.
   void fill_pairs(std::span<const Directions> pairs, std::span<double> values) const override;
+
+  /// Pairs above the horizon so far of which the table says nothing.
+  std::size_t unanswered() const { return unanswered_; }
 
  private:
   const Table& table_;
   TableSpec spec_;
   int rotations_;
+  mutable std::atomic<std::size_t> unanswered_ = 0;
 };
 
 }  // namespace clothbrdf

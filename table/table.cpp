@@ -54,7 +54,13 @@ std::string Table::interpolation() const {
 bool Table::interpolate(const Directions& directions, std::span<double> values) const {
   std::fill(values.begin(), values.end(), 0.0);
   if (!directions.above_horizon()) return false;
-  if (interpolant_) return interpolant_->interpolate(directions, values);
+  if (interpolant_) {
+    const bool finite = interpolant_->interpolate(directions, values) &&
+                        std::all_of(values.begin(), values.end(),
+                                    [](double value) { return std::isfinite(value); });
+    if (!finite) std::fill(values.begin(), values.end(), 0.0);
+    return finite;
+  }
   const std::vector<Axis>& axes = spec_.grid().axes;
   std::array<double, 4> angle = spec_.grid().angles(directions.wi, directions.wo);
   // One azimuth of the light stands for any: the eye's is seen from it.

@@ -43,7 +43,7 @@ struct CellRule {
 struct Provenance {
   std::optional<Material> material;
   Effects effects;
-  std::string program;  ///< "clothbrdf 0.1.0"; empty for measured data
+  std::string program;    ///< "clothbrdf 0.1.0"; empty for measured data
   std::string note = {};  ///< for people: what a reader had to assume, or left out
 
   bool operator==(const Provenance&) const = default;

@@ -84,7 +84,9 @@ void check_producible(const TableSpec& spec) {
     }
   }
   if (spec.cells.average) {
-    if (!spec.has_grid()) throw InputError("averages need cells: a list of pairs has none");
+    if (!spec.has_grid())
+      throw InputError(
+          "--cells average: not for files that choose their own nodes, nor for lists of pairs");
     if (spec.provenance.material->reflectance == Reflectance::kPaper) {
       throw InputError(
           "--cells average: not for a material of reflectance 'paper', where the mean over cells "
