@@ -194,7 +194,7 @@ void prune_boxes(Boxes& boxes, double error) {
 BoxTree BoxTree::build(const Producer& producer, const Workers& workers, const Limits& limits) {
   constexpr std::size_t kParts = kChildren * kChildren * kChildren;
   // A round of parts fits into memory however finely they are cut.
-  constexpr std::size_t kRound = 64;
+  constexpr std::size_t kRound = 16;
   const CellRules rules(limits.depth);
   Limits now = limits;
   std::vector<Boxes> parts(kParts);

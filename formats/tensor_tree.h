@@ -35,7 +35,7 @@ class BoxTree {
   };
 
   /// Counts 16^depth cells into the workers' progress. The same tree for any number of threads.
-  /// Memory: 40 bytes for each box allowed and 100 MB.
+  /// Memory: 40 bytes for each box allowed and 40 MB.
   static BoxTree build(const Producer& producer, const Workers& workers, const Limits& limits);
 
   /// Takes the children of boxes whose error is no more.
