@@ -136,13 +136,14 @@ TEST_CASE("Klems means of cloths, narrow lobes too, are exact to the promised to
   const TemporaryFolder folder;
   const std::vector<Patch> patches = all_patches();
   Material narrow = read_material(preset("silk"));
-  narrow.warp.lobe_axes = {0.02, 0.4};
-  narrow.weft.lobe_axes = {0.02, 0.4};
+  narrow.warp.lobe_axes = {0.05, 0.4};
+  narrow.weft.lobe_axes = {0.05, 0.4};
   Material literal = read_material(preset("tamamushi"));
   literal.reflectance = Reflectance::kPaper;
   const std::pair<Material, int> cases[] = {
-      {read_material(preset("silk")), 30}, {narrow, 60}, {literal, 30}};
+      {read_material(preset("silk")), 24}, {narrow, 36}, {literal, 24}};
   double worst = 0;
+  double worst_at_horizon = 0;
   for (const auto& [material, steps] : cases) {
     const bool is_narrow = material.warp.lobe_axes[0] == narrow.warp.lobe_axes[0];
     const auto producer = pair_producer(material);
@@ -160,17 +161,16 @@ TEST_CASE("Klems means of cloths, narrow lobes too, are exact to the promised to
         INFO(material.name << " axis " << material.warp.lobe_axes[0] << " light patch " << light
                            << " eye patch " << eye << " channel " << c << ": " << found << ", is "
                            << exact[c]);
-        if (light != 133) worst = std::max(worst, relative(found, exact[c]));
-        // The midpoints are off, too: by up to 2e-3, and 5e-3 where light and eye meet at the
-        // horizon. There the narrow lobe is beyond the budget: 12 % off.
-        const double allowed = light != 133 ? kKlemsAccuracy + 2e-3
-                               : is_narrow  ? 0.15
-                                            : kKlemsAccuracy + 5e-3;
+        double& of_kind = light == 133 ? worst_at_horizon : worst;
+        of_kind = std::max(of_kind, relative(found, exact[c]));
+        // Where light and eye meet at the horizon the midpoints are off, too, by up to 7e-3, and
+        // the narrow lobe is beyond the budget.
+        const double allowed = light != 133 ? kKlemsAccuracy : is_narrow ? 0.05 : 8e-3;
         CHECK(relative(found, exact[c]) <= allowed);
       }
     }
   }
-  WARN("worst relative error below 75 degrees " << worst);
+  WARN("worst relative error below 75 degrees " << worst << ", beyond " << worst_at_horizon);
 }
 
 TEST_CASE("a Klems file reads back, and looks its patches up as Radiance does") {

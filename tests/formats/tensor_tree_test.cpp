@@ -157,13 +157,13 @@ TEST_CASE("a tensor tree holds the means of its boxes, where its readers look") 
   double worst_colour = 0;
   double worst_at_horizon = 0;
   std::array<int, 8> of_depth{};
-  for (int k = 0; k < 400; ++k) {
+  for (int k = 0; k < 200; ++k) {
     const Point p = {anywhere(random), anywhere(random), anywhere(random), anywhere(random)};
     double width = 1;
     const double found = y.at(p, &width);
     Point low = p;
     for (double& at : low) at = std::floor(at / width) * width;
-    const std::array<double, 3> exact = dense_mean(*producer, low, width, 24);
+    const std::array<double, 3> exact = dense_mean(*producer, low, width, 14);
     const double error = std::abs(found / luminance(exact) - 1);
     const auto high = [](double a, double b) {
       return std::max(std::abs(2 * a - 1), std::abs(2 * b - 1)) >
