@@ -111,7 +111,7 @@ void write_klems(const Producer& producer, AtomicFile& file, const WriteOptions&
   const std::string bases = "<ColumnAngleBasis>" + name + "</ColumnAngleBasis>\n<RowAngleBasis>" +
                             name + "</RowAngleBasis>\n";
   const std::pair<const char*, double Tristimulus::*> spectra[] = {
-      {"Visible", &Tristimulus::Y}, {"CIE-X", &Tristimulus::X}, {"CIE-Z", &Tristimulus::Z}};
+      {"Visible", &Tristimulus::y}, {"CIE-X", &Tristimulus::x}, {"CIE-Z", &Tristimulus::z}};
   for (const auto& [spectrum, component] : spectra) {
     out.begin_block(spectrum, bases);
     for (std::size_t eye = 0; eye < basis.size(); ++eye) {
@@ -228,7 +228,7 @@ Table read_klems(const WindowFile& file) {
         values.push_back(numbers[0][at]);
         continue;
       }
-      const Rgb rgb = to_rgb({.X = numbers[1][at], .Y = numbers[0][at], .Z = numbers[2][at]});
+      const Rgb rgb = to_rgb({.x = numbers[1][at], .y = numbers[0][at], .z = numbers[2][at]});
       values.insert(values.end(), rgb.begin(), rgb.end());
     }
   }

@@ -95,7 +95,8 @@ std::size_t KlemsBasis::index_of(const Vector3<double>& direction) const {
     before += bands_[band].patches;
   }
   const std::size_t patches = bands_[band].patches;
-  const auto nearest = static_cast<std::size_t>(phi / 360 * static_cast<double>(patches) + 0.5);
+  const auto nearest =
+      static_cast<std::size_t>(std::lround(phi / 360 * static_cast<double>(patches)));
   return before + nearest % patches;
 }
 

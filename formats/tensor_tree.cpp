@@ -50,8 +50,9 @@ float deviation(const BoxTree::Box& parent, const std::array<float, 3>& child) {
   return difference > 0 ? static_cast<float>(difference / largest(parent.mean)) : 0;
 }
 
-// Sets the mean and the error of a box whose children, and all below, follow it.
-void summarise(std::vector<BoxTree::Box>& boxes, std::size_t parent) {
+// Sets the mean and the error of a box of a depth whose children, and all below, follow it.
+void summarise(std::vector<BoxTree::Box>& boxes, std::size_t parent, int depth) {
+  const float width = std::ldexp(1.0F, -depth);
   std::array<std::size_t, kChildren> children{};
   std::size_t next = parent + 1;
   Rgb sum{};
@@ -64,7 +65,8 @@ void summarise(std::vector<BoxTree::Box>& boxes, std::size_t parent) {
   for (std::size_t c = 0; c < 3; ++c) box.mean[c] = static_cast<float>(sum[c] / kChildren);
   box.error = 0;
   for (const std::size_t child : children) {
-    box.error = std::max({box.error, boxes[child].error, deviation(box, boxes[child].mean)});
+    box.error =
+        std::max({box.error, boxes[child].error, width * deviation(box, boxes[child].mean)});
   }
   box.size = static_cast<std::uint32_t>(next - parent);
 }
@@ -104,7 +106,7 @@ class Builder {
     boxes.emplace_back();
     if (place.depth < kSureDepth) {
       for (std::size_t n = 0; n < kChildren; ++n) build(place.child(n), boxes);
-      summarise(boxes, parent);
+      summarise(boxes, parent, place.depth);
       return;
     }
     if (place.depth == kSureDepth) {
@@ -113,7 +115,7 @@ class Builder {
     if (place.depth == limits_.depth) return;  // its parent knows the mean
     const std::array<std::array<float, 3>, kChildren> means = child_means(place);
     for (const std::array<float, 3>& mean : means) boxes.push_back({mean, 0, 1});
-    summarise(boxes, parent);
+    summarise(boxes, parent, place.depth);
     const bool cut = boxes[parent].error > static_cast<float>(limits_.error);
     if (cut && place.depth + 1 == limits_.depth) return;
     boxes.resize(parent + 1);
@@ -121,7 +123,7 @@ class Builder {
     boxes[parent].error = 0;
     if (!cut) return;
     for (std::size_t n = 0; n < kChildren; ++n) build(place.child(n), boxes);
-    summarise(boxes, parent);
+    summarise(boxes, parent, place.depth);
   }
 
  private:
@@ -192,7 +194,7 @@ void prune_boxes(Boxes& boxes, double error) {
 BoxTree BoxTree::build(const Producer& producer, const Workers& workers, const Limits& limits) {
   constexpr std::size_t kParts = kChildren * kChildren * kChildren;
   // A round of parts fits into memory however finely they are cut.
-  constexpr std::size_t kRound = 64;
+  constexpr std::size_t kRound = 16;
   const CellRules rules(limits.depth);
   Limits now = limits;
   std::vector<Boxes> parts(kParts);
@@ -228,7 +230,7 @@ BoxTree BoxTree::build(const Producer& producer, const Workers& workers, const L
     const std::size_t parent = tree.boxes_.size();
     tree.boxes_.emplace_back();
     for (std::size_t n = 0; n < kChildren; ++n) self(self, depth + 1);
-    summarise(tree.boxes_, parent);
+    summarise(tree.boxes_, parent, depth);
   };
   assemble(assemble, 0);
   prune_boxes(tree.boxes_, now.error);

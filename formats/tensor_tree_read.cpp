@@ -178,12 +178,12 @@ class TreeLookup final : public Interpolant {
   // As stored, also where it is no number.
   Rgb found(const Directions& directions) const {
     const Point point = cube_point(directions, rank_);
-    const double Y = visible_.at(point);
-    if (!v_) return {Y, 0, 0};
+    const double y = visible_.at(point);
+    if (!v_) return {y, 0, 0};
     const double u = u_->at(point);
     const double v = v_->at(point);
-    if (Y == 0) return {0, 0, 0};
-    return to_rgb({.X = Y * 9 * u / (4 * v), .Y = Y, .Z = Y * (12 - 3 * u - 20 * v) / (4 * v)});
+    if (y == 0) return {0, 0, 0};
+    return to_rgb({.x = y * 9 * u / (4 * v), .y = y, .z = y * (12 - 3 * u - 20 * v) / (4 * v)});
   }
 
   std::string rule() const override { return "that of the tree's box"; }

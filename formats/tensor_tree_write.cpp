@@ -30,13 +30,13 @@ constexpr const char* kSpectra[] = {"Visible", "CIE-u", "CIE-v"};
 
 double component_of(const BoxTree::Box& box, Component component) {
   const Tristimulus xyz = to_tristimulus({box.mean[0], box.mean[1], box.mean[2]});
-  const double sum = xyz.X + 15 * xyz.Y + 3 * xyz.Z;
+  const double sum = xyz.x + 15 * xyz.y + 3 * xyz.z;
   // Black is stored as a dark grey.
-  const bool black = !(xyz.Y > 0 && sum > 0);
+  const bool black = !(xyz.y > 0 && sum > 0);
   switch (component) {
-    case Component::kVisible: return black ? 0 : xyz.Y;
-    case Component::kU: return black ? 4.0 / 19 : std::max(0.0, 4 * xyz.X / sum);
-    case Component::kV: return black ? 9.0 / 19 : std::max(0.0, 9 * xyz.Y / sum);
+    case Component::kVisible: return black ? 0 : xyz.y;
+    case Component::kU: return black ? 4.0 / 19 : std::max(0.0, 4 * xyz.x / sum);
+    case Component::kV: return black ? 9.0 / 19 : std::max(0.0, 9 * xyz.y / sum);
   }
   return 0;
 }
@@ -87,7 +87,7 @@ std::vector<std::uint8_t> number_bytes(const BoxTree& tree) {
 std::uint64_t pruned_bytes(const std::vector<BoxTree::Box>& boxes,
                            const std::vector<std::uint8_t>& numbers, double error,
                            std::size_t at = 0) {
-  constexpr std::uint64_t kBraces = 3 * 3;
+  constexpr std::uint64_t kBraces = 9;  // "{", "}" and a line's end, thrice
   const auto whole = [&](std::size_t box) {
     return boxes[box].size == 1 || boxes[box].error <= error;
   };

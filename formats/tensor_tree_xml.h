@@ -8,8 +8,9 @@ namespace clothbrdf {
 /// Radiance's tensor tree `.tree.xml` (TensorTree4, LBNL/Shirley-Chiu): f_r over the squares of the
 /// light's opposite and of the eye, in nested boxes, 128 an axis at the finest. A value is the mean
 /// of f_r over its box, each direction weighted with its projected solid angle. A box is cut where
-/// one of its 16 parts is farther from its mean than an error, relative to the largest of R, G and
-/// B: the least one, but not below kTreeError, whose file takes at most --size or kTreeBytes.
+/// one of its 16 parts is far from its mean: relative to the largest of R, G and B, times the box's
+/// width (1 is the whole axis), farther than the least error, but not below kTreeError, whose file
+/// takes at most --size or kTreeBytes.
 /// Visible is Y; CIE-u and CIE-v are u' and v' of the box's mean (to_tristimulus), in trees of the
 /// same boxes. "Reflection Back" is the cloth's front, as in Radiance. Memory: 300 MB at most.
 ///
@@ -17,7 +18,7 @@ namespace clothbrdf {
 /// only for the paper's f_r, which is not reciprocal.
 Format tensor_tree_format();
 
-inline constexpr double kTreeError = 0.02;
+inline constexpr double kTreeError = 0.001;
 /// Of a file, where --size is left out.
 inline constexpr std::uint64_t kTreeBytes = 32000000;
 /// The smallest --size.

@@ -66,6 +66,6 @@ Tristimulus to_tristimulus(const Rgb& rgb) {
   return {xyz[0], xyz[1], xyz[2]};
 }
 
-Rgb to_rgb(const Tristimulus& xyz) { return product(kToRgb, {xyz.X, xyz.Y, xyz.Z}); }
+Rgb to_rgb(const Tristimulus& xyz) { return product(kToRgb, {xyz.x, xyz.y, xyz.z}); }
 
 }  // namespace clothbrdf

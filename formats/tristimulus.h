@@ -11,9 +11,9 @@ namespace clothbrdf {
 /// observer's curve over the sum of illuminant and curve), and Radiance, whose white is the equal
 /// energy point, shows a grey as grey.
 struct Tristimulus {
-  double X = 0;
-  double Y = 0;
-  double Z = 0;
+  double x = 0;  ///< X
+  double y = 0;  ///< Y, the luminance
+  double z = 0;  ///< Z
 };
 
 /// From linear R, G, B with the primaries of Rec. 709.

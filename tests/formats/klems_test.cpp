@@ -105,12 +105,12 @@ TEST_CASE("a Klems file holds patch means where its readers look, light named by
   CHECK(between(file, "<IncidentDataStructure>", "</IncidentDataStructure>") == "Columns");
   CHECK(between(file, "<ColumnAngleBasis>", "</ColumnAngleBasis>") == "LBNL/Klems Full");
   CHECK(between(file, "<RowAngleBasis>", "</RowAngleBasis>") == "LBNL/Klems Full");
-  const std::vector<double> X = listed_numbers(scattering_text(file, "CIE-X"));
-  const std::vector<double> Y = listed_numbers(scattering_text(file, "Visible"));
-  const std::vector<double> Z = listed_numbers(scattering_text(file, "CIE-Z"));
-  REQUIRE(X.size() == kPatches * kPatches);
-  REQUIRE(Y.size() == kPatches * kPatches);
-  REQUIRE(Z.size() == kPatches * kPatches);
+  const std::vector<double> x = listed_numbers(scattering_text(file, "CIE-X"));
+  const std::vector<double> y = listed_numbers(scattering_text(file, "Visible"));
+  const std::vector<double> z = listed_numbers(scattering_text(file, "CIE-Z"));
+  REQUIRE(x.size() == kPatches * kPatches);
+  REQUIRE(y.size() == kPatches * kPatches);
+  REQUIRE(z.size() == kPatches * kPatches);
   const std::vector<Patch> patches = all_patches();
   double worst = 0;
   for (std::size_t row = 0; row < kPatches; ++row) {
@@ -123,9 +123,9 @@ TEST_CASE("a Klems file holds patch means where its readers look, light named by
       const double grey = light * eye;
       const std::size_t at = row * kPatches + column;
       // Rec. 709's luminance to four digits; X and Z relative to D65's.
-      worst = std::max(worst, relative(Y[at], (0.2126 + 2 * 0.7152 + 3 * 0.0722) * grey));
-      worst = std::max(worst, relative(X[at], (0.4124 + 2 * 0.3576 + 3 * 0.1805) / 0.9505 * grey));
-      worst = std::max(worst, relative(Z[at], (0.0193 + 2 * 0.1192 + 3 * 0.9505) / 1.0890 * grey));
+      worst = std::max(worst, relative(y[at], (0.2126 + 2 * 0.7152 + 3 * 0.0722) * grey));
+      worst = std::max(worst, relative(x[at], (0.4124 + 2 * 0.3576 + 3 * 0.1805) / 0.9505 * grey));
+      worst = std::max(worst, relative(z[at], (0.0193 + 2 * 0.1192 + 3 * 0.9505) / 1.0890 * grey));
     }
   }
   WARN("worst relative error " << worst << ", of which 2e-4 are the matrix's digits");
@@ -136,13 +136,14 @@ TEST_CASE("Klems means of cloths, narrow lobes too, are exact to the promised to
   const TemporaryFolder folder;
   const std::vector<Patch> patches = all_patches();
   Material narrow = read_material(preset("silk"));
-  narrow.warp.lobe_axes = {0.02, 0.4};
-  narrow.weft.lobe_axes = {0.02, 0.4};
+  narrow.warp.lobe_axes = {0.05, 0.4};
+  narrow.weft.lobe_axes = {0.05, 0.4};
   Material literal = read_material(preset("tamamushi"));
   literal.reflectance = Reflectance::kPaper;
   const std::pair<Material, int> cases[] = {
-      {read_material(preset("silk")), 30}, {narrow, 60}, {literal, 30}};
+      {read_material(preset("silk")), 24}, {narrow, 36}, {literal, 24}};
   double worst = 0;
+  double worst_at_horizon = 0;
   for (const auto& [material, steps] : cases) {
     const bool is_narrow = material.warp.lobe_axes[0] == narrow.warp.lobe_axes[0];
     const auto producer = pair_producer(material);
@@ -160,17 +161,16 @@ TEST_CASE("Klems means of cloths, narrow lobes too, are exact to the promised to
         INFO(material.name << " axis " << material.warp.lobe_axes[0] << " light patch " << light
                            << " eye patch " << eye << " channel " << c << ": " << found << ", is "
                            << exact[c]);
-        if (light != 133) worst = std::max(worst, relative(found, exact[c]));
-        // The midpoints are off, too: by up to 2e-3, and 5e-3 where light and eye meet at the
-        // horizon. There the narrow lobe is beyond the budget: 12 % off.
-        const double allowed = light != 133 ? kKlemsAccuracy + 2e-3
-                               : is_narrow  ? 0.15
-                                            : kKlemsAccuracy + 5e-3;
+        double& of_kind = light == 133 ? worst_at_horizon : worst;
+        of_kind = std::max(of_kind, relative(found, exact[c]));
+        // Where light and eye meet at the horizon the midpoints are off, too, by up to 7e-3, and
+        // the narrow lobe is beyond the budget.
+        const double allowed = light != 133 ? kKlemsAccuracy : is_narrow ? 0.05 : 8e-3;
         CHECK(relative(found, exact[c]) <= allowed);
       }
     }
   }
-  WARN("worst relative error below 75 degrees " << worst);
+  WARN("worst relative error below 75 degrees " << worst << ", beyond " << worst_at_horizon);
 }
 
 TEST_CASE("a Klems file reads back, and looks its patches up as Radiance does") {
@@ -272,77 +272,6 @@ TEST_CASE("Klems files of other structures, bases and colours are read") {
   CHECK(found == 2 * 41 + 7);
   REQUIRE(rows.interpolate(d, std::span(&found, 1)));
   CHECK(found == 7 * 73 + 2);
-}
-
-TEST_CASE("every cut of a Klems file is refused, and no changed byte does harm") {
-  const TemporaryFolder folder;
-  const std::string bases =
-      "<ColumnAngleBasis>LBNL/Klems Quarter</ColumnAngleBasis>"
-      "<RowAngleBasis>LBNL/Klems Quarter</RowAngleBasis>";
-  std::string numbers;
-  for (int k = 0; k < 41 * 41; ++k) numbers += "1 ";
-  const std::string file = window_file("Columns", bases, numbers);
-  for (std::size_t size = 0; size < file.size(); ++size) {
-    write_file(folder / "cut.xml", file.substr(0, size));
-    INFO("cut to " << size << " of " << file.size() << " bytes");
-    REQUIRE_THROWS_WITH(
-        format_for("cut.xml").read(folder / "cut.xml"),
-        ContainsSubstring((folder / "cut.xml").string() + ": ") && !ContainsSubstring("\n"));
-  }
-  std::size_t refused = 0;
-  std::size_t read = 0;
-  const std::size_t header = file.find("<ScatteringData>") + 20;
-  for (std::size_t at = 0; at < header; ++at) {
-    for (const char changed : {'\0', '<', '>', '&', '"', ' ', '9', '\xff', '{'}) {
-      std::string other = file;
-      other[at] = changed;
-      write_file(folder / "other.xml", other);
-      try {
-        const Table table = format_for("other.xml").read(folder / "other.xml");
-        INFO("byte " << at << " as " << static_cast<int>(changed));
-        REQUIRE(table.spec().cell_count() == 41 * 41);
-        ++read;
-      } catch (const InputError&) {
-        ++refused;
-      }
-    }
-  }
-  WARN(refused << " changes refused, " << read << " without effect on the shape");
-  CHECK(refused > 1000);
-  CHECK(read > 100);
-}
-
-TEST_CASE("what is not a Klems file is refused in one line with what is allowed") {
-  const TemporaryFolder folder;
-  const auto refused = [&](const std::string& content, const std::string& part) {
-    write_file(folder / "bad.xml", content);
-    CHECK_THROWS_WITH(format_for("bad.xml").read(folder / "bad.xml"),
-                      ContainsSubstring((folder / "bad.xml").string() + ": ") &&
-                          ContainsSubstring(part) && !ContainsSubstring("\n"));
-  };
-  const std::string quarter =
-      "<ColumnAngleBasis>LBNL/Klems Quarter</ColumnAngleBasis>"
-      "<RowAngleBasis>LBNL/Klems Quarter</RowAngleBasis>";
-  refused("", "empty");
-  refused("{}", "no XML");
-  refused("<html/>", "WindowElement");
-  refused(window_file("Diagonals", quarter, "1"), "'Diagonals'; allowed: Columns");
-  refused(window_file("Columns", "", "1"), "allowed: LBNL/Klems Full, Half, Quarter");
-  refused(window_file("Columns", quarter, "1 2 3"), "after 3 numbers; it has 1681");
-  refused(window_file("Columns", quarter, "1 2 three"), "'three' after 2 numbers");
-  std::string many;
-  for (int k = 0; k < 41 * 41 + 1; ++k) many += "1 ";
-  refused(window_file("Columns", quarter, many), "after 1681 numbers");
-  std::string front = window_file("Columns", quarter, many);
-  front.replace(front.find("Reflection Back"), 15, "Reflection Fron");
-  refused(front, "'Reflection Back'");
-  // Entities are not expanded.
-  refused("<!DOCTYPE a [<!ENTITY b \"" + std::string(1000, 'x') + "\">]>" +
-              window_file("Columns", quarter, "&b;&b;"),
-          "'&b;&b;'");
-  CHECK_THROWS_AS(format_for("x.xml").read(folder / "absent.xml"), InputError);
-  const Table table = preset_table("silk", inout());
-  CHECK_THROWS_WITH(write_table(table, folder / "k.xml"), ContainsSubstring("patches of its own"));
 }
 
 }  // namespace clothbrdf::test
