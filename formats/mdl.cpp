@@ -154,7 +154,7 @@ void write_mdl(const Producer& producer, AtomicFile& file, const WriteOptions& o
       left = left.subspan(sizes.phi * kPairsOfNode * channels);
       write_row(row.i, row.o);
       if (row.i != row.o) write_row(row.o, row.i);
-      options.workers.advance(sizes.phi * (row.i == row.o ? 1 : 2));
+      options.workers.advance(row.i == row.o ? sizes.phi : std::size_t{2} * sizes.phi);
     }
     rows.clear();
   };
