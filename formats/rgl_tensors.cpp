@@ -20,18 +20,28 @@ double dot(const Vector3<double>& a, const Vector3<double>& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-std::vector<float> read_axis(const TensorFile& file, const std::string& name, double lowest,
-                             double highest, const std::string& unit) {
+struct AxisRange {
+  double lowest;
+  double highest;
+  const char* unit;
+};
+
+[[noreturn]] void refuse_node(const TensorFile& file, const std::string& name, std::size_t index,
+                              double node, const AxisRange& allowed) {
+  throw InputError(file.name() + ": field '" + name + "': node " + std::to_string(index) + " is " +
+                   number_text(node) + "; ascending values from " + number_text(allowed.lowest) +
+                   " to " + number_text(allowed.highest) + " " + allowed.unit + " are allowed");
+}
+
+std::vector<float> read_axis(const TensorFile& file, const std::string& name,
+                             const AxisRange& range) {
   const Tensor& field = file.field(name);
   if (field.shape.size() != 1) file.refuse_shape(field, "one dimension is");
   std::vector<float> nodes = file.numbers(field);
   for (std::size_t k = 0; k < nodes.size(); ++k) {
     const double node = double{nodes[k]};
-    if (!(node >= lowest && node <= highest) || (k > 0 && nodes[k] <= nodes[k - 1])) {
-      const std::string allowed = number_text(lowest) + " to " + number_text(highest) + " " + unit;
-      throw InputError(file.name() + ": field '" + name + "': node " + std::to_string(k) + " is " +
-                       number_text(node) + "; ascending values from " + allowed + " are allowed");
-    }
+    const bool inside = node >= range.lowest && node <= range.highest;
+    if (!inside || (k > 0 && nodes[k] <= nodes[k - 1])) refuse_node(file, name, k, node, range);
   }
   return nodes;
 }
@@ -48,9 +58,9 @@ void check_no_densities_below_zero(const TensorFile& file, const std::string& na
 }  // namespace
 
 RglTensors::RglTensors(const TensorFile& file)
-    : phi_i_(
-          read_axis(file, "phi_i", -2 * kPi - kAngleRounding, 2 * kPi + kAngleRounding, "radians")),
-      theta_i_(read_axis(file, "theta_i", 0, kPi / 2 + kAngleRounding, "radians")),
+    : phi_i_(read_axis(file, "phi_i",
+                       {-2 * kPi - kAngleRounding, 2 * kPi + kAngleRounding, "radians"})),
+      theta_i_(read_axis(file, "theta_i", {0, kPi / 2 + kAngleRounding, "radians"})),
       ndf_(read_grid(file, "ndf")),
       sigma_(read_grid(file, "sigma")),
       warp_(read_warp(file)) {
@@ -99,7 +109,7 @@ void RglTensors::read_axes(const TensorFile& file) {
 
 void RglTensors::read_values(const TensorFile& file) {
   const bool spectral = file.find("wavelengths") != nullptr;
-  if (spectral) wavelengths_nm_ = read_axis(file, "wavelengths", 1, 1e6, "nm");
+  if (spectral) wavelengths_nm_ = read_axis(file, "wavelengths", {1, 1e6, "nm"});
   const std::string name = spectral ? "spectra" : "rgb";
   channels_ = spectral ? wavelengths_nm_.size() : 3;
   const Tensor& luminance = file.field("luminance");
