@@ -113,7 +113,7 @@ TEST_CASE("convert says what is lost, and how far off the old nodes are") {
   CHECK(resampled["grid"] == "halfdiff3d:20x20x20");
   CHECK(table_of(out).spec().grid() == halfdiff3d(20, 20, 20));
   CHECK_THAT(output_of({"convert", "--grid", "inout:4x6x4x6", in, out}),
-             ContainsSubstring("\n  error at the old nodes: rms "));
+             ContainsSubstring("\n  relative error at the old nodes: rms "));
 }
 
 TEST_CASE("a table that MERL cannot hold is resampled, its components left out") {

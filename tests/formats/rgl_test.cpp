@@ -223,12 +223,9 @@ TEST_CASE("a black or a broken table makes a file that can be read") {
     }
     const Table table = read_back(folder / "t.bsdf");
     std::vector<double> f(3);
-    CHECK(table.interpolate({{0.6, 0, 0.8}, {0, 0.6, 0.8}}, f));
-    if (value == value) {
-      CHECK(std::abs(f[1] - value) <= 0.02 * std::abs(value));
-    } else {
-      CHECK(std::isnan(f[1]));
-    }
+    // What is no number is no answer.
+    CHECK(table.interpolate({{0.6, 0, 0.8}, {0, 0.6, 0.8}}, f) == std::isfinite(value));
+    if (std::isfinite(value)) CHECK(std::abs(f[1] - value) <= 0.02 * std::abs(value));
   }
 }
 
