@@ -169,7 +169,8 @@ std::vector<Albedo> albedo_by_theta(const Table& table, const Workers& workers) 
       Albedo& albedo = all[k];
       albedo.theta_i_deg = thetas[k / of_theta];
       albedo.of_eye = k % roles == 1;
-      albedo.phi_i_deg = 360.0 * static_cast<double>(k % of_theta / roles) / azimuths;
+      const std::size_t azimuth = k % of_theta / roles;
+      albedo.phi_i_deg = 360.0 * static_cast<double>(azimuth) / azimuths;
       albedo.channels.resize(table.spec().channels.size());
       const Vector3<double> w = direction(albedo.theta_i_deg, albedo.phi_i_deg);
       if (over_wo) {

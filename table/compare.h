@@ -34,10 +34,10 @@ inline constexpr std::size_t kComparedPairs = 50000;
 inline constexpr double kComparedTheta = 85;
 PairList compared_pairs(bool isotropic);
 
-/// Differences of b from a, at the nodes of a's grid or at its scattered samples; b is resampled
-/// there (resample.h) where its samples are others. A table that has no grid but answers all pairs
-/// is compared at kComparedPairs random ones. Throws InputError where the tables have no channel or
-/// no cell in common.
-Comparison compare(const Table& a, const Table& b, const Workers& workers);
+/// Differences of the second table from the first, at the nodes of the first's grid or at its
+/// scattered samples; the second is resampled there (resample.h) where its samples are others. A
+/// table that has no grid but answers all pairs is compared at kComparedPairs random ones. Throws
+/// InputError where the tables have no channel or no cell in common.
+Comparison compare(const Table& first, const Table& second, const Workers& workers);
 
 }  // namespace clothbrdf

@@ -73,8 +73,8 @@ bool NearestSample::interpolate(const Directions& directions, std::span<double> 
   if (nearest == index_->tree.qend()) return false;
   // The chord of both angles together is no shorter than that of the larger one.
   constexpr double kRadian = std::numbers::pi / 180;
-  static const double farthest = 2 * std::sin(kFarthestDeg * kRadian / 2);
-  if (bg::distance(asked, nearest->first) > farthest) return false;
+  static const double kFarthest = 2 * std::sin(kFarthestDeg * kRadian / 2);
+  if (bg::distance(asked, nearest->first) > kFarthest) return false;
   const auto first =
       index_->values.begin() + static_cast<std::ptrdiff_t>(nearest->second * values.size());
   std::copy_n(first, values.size(), values.begin());
