@@ -57,7 +57,7 @@ std::unique_ptr<Producer> in_colours_of(const Format& format, const Producer& pr
   return nullptr;
 }
 
-TableSpec in_colours_of(const Format& format, TableSpec spec, const WriteOptions& options) {
+TableSpec in_colours_of(const Format& format, const TableSpec& spec, const WriteOptions& options) {
   const std::unique_ptr<Producer> mixed = in_colours_of(format, SpecOnly(spec), options);
   return mixed ? mixed->spec() : spec;
 }

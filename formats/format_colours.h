@@ -15,7 +15,7 @@ inline constexpr const char* kMono = "mono";
 /// under D65, R, G and B a spectrum (table/spectrum.h), one channel without colour stands for all
 /// three. Unchanged where they are there already, and where they cannot be made: check_output
 /// refuses that.
-TableSpec in_colours_of(const Format& format, TableSpec spec, const WriteOptions& options);
+TableSpec in_colours_of(const Format& format, const TableSpec& spec, const WriteOptions& options);
 
 /// The producer of that spec; null where it is unchanged. Keeps a reference to the producer.
 std::unique_ptr<Producer> in_colours_of(const Format& format, const Producer& producer,
