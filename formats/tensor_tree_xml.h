@@ -12,7 +12,8 @@ namespace clothbrdf {
 /// width (1 is the whole axis), farther than the least error, but not below kTreeError, whose file
 /// takes at most --size or kTreeBytes.
 /// Visible is Y; CIE-u and CIE-v are u' and v' of the box's mean (to_tristimulus), in trees of the
-/// same boxes. "Reflection Back" is the cloth's front, as in Radiance. Memory: 300 MB at most.
+/// same boxes. "Reflection Back" is the cloth's front, as in Radiance. Four million boxes at
+/// most, about 90 MB; memory: 300 MB.
 ///
 /// Radiance itself asks with the ray's direction back to the eye as the incident one, which counts
 /// only for the paper's f_r, which is not reciprocal.
