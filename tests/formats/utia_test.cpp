@@ -243,7 +243,7 @@ TEST_CASE("between the nodes of a UTIA table its readers' rule holds, up to the 
   CHECK(back.complete());
 }
 
-TEST_CASE("negative UTIA codes read as 0 and are counted; linear ones are kept; NaN is kept") {
+TEST_CASE("negative UTIA codes read as 0 and are counted, linear ones and NaN are kept") {
   const TemporaryFolder folder;
   std::string file(kBytes, '\0');
   const auto put = [&](std::size_t index, double value) {
@@ -272,7 +272,7 @@ TEST_CASE("negative UTIA codes read as 0 and are counted; linear ones are kept; 
   CHECK(values[0] == 0);
 }
 
-TEST_CASE("files of another size are no UTIA files; tables of other grids are refused") {
+TEST_CASE("files of another size are no UTIA files, and tables of other grids are refused") {
   const TemporaryFolder folder;
   for (const char* const name : {"bad.bin", "bad.linear.bin"}) {
     for (const std::size_t size :
