@@ -83,6 +83,7 @@ std::vector<std::string> problems(const TableSpec& spec, const TableCheck& check
 /// What is odd, but no fault of the table's.
 std::vector<std::string> notes(const TableSpec& spec, const TableCheck& check) {
   std::vector<std::string> found;
+  if (!spec.provenance.note.empty()) found.push_back(spec.provenance.note);
   if (check.masked > 0) {
     found.push_back(with_commas(check.masked) + " cells above the horizon are marked as not valid");
   }

@@ -48,6 +48,7 @@ std::vector<std::string> what_is_lost(const Table& source, const Conversion& con
   const TableSpec& to = conversion.spec;
   const Format& format = *conversion.format;
   std::vector<std::string> lost;
+  if (!from.provenance.note.empty()) lost.push_back("before: " + from.provenance.note);
   if (averages_rotations(from, to)) {
     lost.emplace_back("anisotropy: the mean over rotations of the cloth");
   }

@@ -88,6 +88,7 @@ Json table_info(const std::string& file, const Format& format, const Table& tabl
     info["made_by"] = spec.provenance.program;
     info["effects"] = effects_text(spec.provenance.effects);
   }
+  if (!spec.provenance.note.empty()) info["note"] = spec.provenance.note;
   if (spec.provenance.material) {
     if (spec.provenance.material->reflectance == Reflectance::kPaper) info["note"] = kNotReciprocal;
     info["material"] = Json::parse(material_to_json(*spec.provenance.material));
