@@ -23,8 +23,7 @@ std::vector<Samples> candidates(const TableSpec& source, const Format& format,
                                 const ConversionWish& wish) {
   const auto& material = source.provenance.material;
   // Whether f(wi, wo) is f(wo, wi) is not known of a table that holds both.
-  const bool both_orders = !source.has_grid() || source.grid().kind == GridKind::kInOut ||
-                           source.grid().axes.back().highest_deg > 180;
+  const bool both_orders = !source.has_grid() || !source.grid().folds_orders();
   const Reflectance reflectance = material      ? material->reflectance
                                   : both_orders ? Reflectance::kPaper
                                                 : Reflectance::kMicrofacet;
@@ -121,6 +120,7 @@ Conversion plan_conversion(const Table& source, const ConversionWish& wish) {
       Conversion conversion{&format, source.spec(), {}, {}};
       TableSpec& spec = conversion.spec;
       spec.samples = samples;
+      spec.provenance.error.reset();  // it was that of the source's file
       if (!components) {
         std::erase_if(spec.channels, [](const Channel& c) { return c.part != Part::kTotal; });
         spec = in_colours_of(format, spec, wish.write);

@@ -16,11 +16,11 @@
 #include "cli/file_options.h"
 #include "cli/options.h"
 #include "cli/progress_bar.h"
+#include "cost/verified.h"
 #include "formats/format.h"
 #include "formats/format_colours.h"
 #include "formats/material_json.h"
 #include "support/errors.h"
-#include "tabulate/model_producer.h"
 
 namespace clothbrdf {
 namespace {
@@ -31,31 +31,34 @@ struct TabulateOptions {
   std::string material;
   std::vector<std::string> outputs;
   std::optional<std::string> grid;
-  std::string cells = "point";
+  std::optional<std::string> cells;
   std::optional<std::string> effects;
   std::optional<std::string> threads;
   FileOptions files;
   bool components = false;
   bool isotropic = false;
+  std::optional<std::string> tolerance;
+  std::optional<std::string> metric;
+  bool isotropic_ok = false;
   bool dry_run = false;
   bool json = false;
 };
 
 struct Output {
-  std::filesystem::path path;
-  const Format* format;
-  TableSpec computed;  // from the model
-  TableSpec spec;      // in the file's colours
-  WriteOptions options;
+  FileOrder order;
+  FileSetting setting;
+  TableSpec spec;    // in the file's colours
   std::string note;  // what this file cannot hold of the material
+  std::optional<MeasuredError> error;
+
+  std::filesystem::path path() const { return order.name; }
 };
 
 std::string what_is_lost(const Material& material, const TableSpec& computed,
                          const TableSpec& written, const Format& format) {
   std::vector<std::string> lost;
   if (written.isotropic()) lost.emplace_back("isotropic: the mean over phi_h");
-  const bool folded = written.has_grid() && written.grid().kind != GridKind::kInOut &&
-                      written.grid().axes.back().highest_deg <= 180;
+  const bool folded = written.has_grid() && written.grid().folds_orders();
   if (material.reflectance == Reflectance::kPaper && folded) {
     lost.emplace_back("not reciprocal: the mean of both orders of the directions");
   }
@@ -68,6 +71,40 @@ std::string what_is_lost(const Material& material, const TableSpec& computed,
   return note;
 }
 
+// Throws InputError where options contradict each other.
+std::optional<Target> target_of(const TabulateOptions& options) {
+  if (!options.tolerance) {
+    if (options.metric) throw InputError("--metric: is for --tolerance, which is missing");
+    if (options.isotropic_ok) {
+      throw InputError("--isotropic-ok: is for --tolerance, which is missing");
+    }
+    return std::nullopt;
+  }
+  const auto refuse = [](const std::string& other, const std::string& what) {
+    throw InputError("--tolerance: chooses " + what + " itself; leave out " + other);
+  };
+  if (options.grid) refuse("--grid", "the grid");
+  if (options.cells) refuse("--cells", "the cells");
+  if (options.files.size) refuse("--size", "the size");
+  Target target;
+  target.tolerance = parse_number("--tolerance", *options.tolerance, {1e-6, 1, false});
+  target.isotropic_ok = options.isotropic_ok;
+  const std::string metric = options.metric.value_or("rms");
+  if (metric != "rms" && metric != "p99") {
+    throw InputError("--metric: '" + metric + "' is not allowed: rms or p99");
+  }
+  target.metric = metric == "rms" ? Metric::kRms : Metric::kP99;
+  return target;
+}
+
+// Looks at the output with the setting that it has now.
+void describe(Output& output) {
+  const FileOrder& order = output.order;
+  const TableSpec computed = computed_spec(order, output.setting);
+  output.spec = in_colours_of(*order.format, computed, output.setting.options);
+  output.note = what_is_lost(order.material, computed, output.spec, *order.format);
+}
+
 Output plan_output(const TabulateOptions& options, const Material& material,
                    const FileToWrite& file) {
   const Format& format = format_for(file.name);
@@ -78,59 +115,105 @@ Output plan_output(const TabulateOptions& options, const Material& material,
     samples = parse_grid(*options.grid, once_around ? 360 : 180);
   }
   const Effects effects = options.effects ? parse_effects(*options.effects) : Effects{};
-  TableSpec computed =
-      material_spec(material, effects, samples, parse_cells(options.cells), options.components);
-  TableSpec spec = in_colours_of(format, computed, file.options);
-  check_output(format, spec, file.options, file.name);
-  check_producible(computed);
-  const std::string note = what_is_lost(material, computed, spec, format);
-  return {file.name, &format, std::move(computed), std::move(spec), file.options, note};
+  Output output{
+      {material, effects, options.components, &format, file.options, options.isotropic, file.name},
+      {std::move(samples), parse_cells(options.cells.value_or("point")), file.options},
+      {},
+      {},
+      {}};
+  check_setting(output.order, output.setting);
+  describe(output);
+  return output;
+}
+
+Json error_json(const MeasuredError& measured) {
+  return {
+      {"rms", measured.error.rms}, {"p99", measured.error.p99},
+      {"max", measured.error.max}, {"reader", measured.reader},
+      {"pairs", measured.pairs},   {"against", measured.of_mean ? "mean over rotations" : "cloth"}};
+}
+
+std::string error_text(const MeasuredError& measured) {
+  std::ostringstream text;
+  text << std::setprecision(3) << "error read " << measured.reader
+       << (measured.of_mean ? ", against the mean over rotations" : "") << ": rms "
+       << measured.error.rms << ", p99 " << measured.error.p99 << ", max " << measured.error.max;
+  return text.str();
+}
+
+void report_json(const Output& output, const Json& cost) {
+  const Layout layout = output.order.format->layout(output.spec, output.setting.options);
+  Json line = {{"file", output.order.name},
+               {"format", output.order.format->name},
+               {"grid", layout.description},
+               {"cells", layout.cells},
+               {"channels", output.spec.channels.size()}};
+  line.update(cost);
+  if (!output.note.empty()) line["note"] = output.note;
+  std::cout << line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
+}
+
+void report_text(const Output& output, const std::string& cost) {
+  const Layout layout = output.order.format->layout(output.spec, output.setting.options);
+  std::cout << output.order.name << ": " << output.order.format->name << ' ' << layout.description
+            << (output.setting.options.half ? " of half floats" : "") << ", "
+            << with_commas(layout.cells) << " cells of " << output.spec.channels.size()
+            << " channels, " << cost;
+  if (!output.note.empty()) std::cout << " (" << output.note << ')';
+  std::cout << '\n';
+}
+
+std::string cost_text(std::uint64_t bytes, double seconds) {
+  std::ostringstream text;
+  text << with_commas(bytes) << " bytes in " << std::setprecision(3) << seconds << " s";
+  return text.str();
 }
 
 void report(const TabulateOptions& options, const Output& output, std::uint64_t bytes,
             double seconds) {
-  const Layout layout = output.format->layout(output.spec, output.options);
   if (options.json) {
-    Json line = {{"file", output.path.string()},
-                 {"format", output.format->name},
-                 {"grid", layout.description},
-                 {"cells", layout.cells},
-                 {"channels", output.spec.channels.size()}};
-    if (!options.dry_run) line.update({{"bytes", bytes}, {"seconds", seconds}});
-    if (!output.note.empty()) line["note"] = output.note;
-    std::cout << line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
+    Json cost = {{"bytes", bytes}, {"seconds", seconds}};
+    if (output.error) cost["error"] = error_json(*output.error);
+    report_json(output, cost);
+  } else {
+    report_text(output, cost_text(bytes, seconds) +
+                            (output.error ? "; " + error_text(*output.error) : std::string()));
+  }
+}
+
+void report(const TabulateOptions& options, const Output& output, const Prediction& expected) {
+  const bool mean_only = expected.isotropy_loss > 0;
+  if (options.json) {
+    Json predicted = {{"seconds", expected.seconds},
+                      {"bytes", expected.bytes},
+                      {"error", error_json(expected.error)}};
+    if (mean_only) predicted["isotropy_loss"] = expected.isotropy_loss;
+    report_json(output, {{"predicted", predicted}});
     return;
   }
   std::ostringstream text;
-  text << output.path.string() << ": " << output.format->name << ' ' << layout.description << ", "
-       << with_commas(layout.cells) << " cells of " << output.spec.channels.size() << " channels";
-  if (options.dry_run) {
-    text << ", not written (dry run)";
-  } else {
-    text << ", " << with_commas(bytes) << " bytes in " << std::setprecision(3) << seconds << " s";
-  }
-  if (!output.note.empty()) text << " (" << output.note << ')';
-  std::cout << text.str() << '\n';
+  text << "not written (dry run); expected: " << cost_text(expected.bytes, expected.seconds) << "; "
+       << error_text(expected.error) << std::setprecision(3);
+  if (mean_only) text << "; the mean over rotations loses " << expected.isotropy_loss << " rms";
+  report_text(output, text.str());
 }
 
-void write(const Output& output, AtomicFile& file, Workers workers) {
-  WriteOptions options = output.options;
-  options.workers = workers;
-  workers.progress->begin(output.path.filename().string(),
-                          output.format->layout(output.spec, options).cells, "cells");
-  const bool single = output.format->precision(options).relative >= 0x1p-24;
-  const std::unique_ptr<Producer> producer =
-      make_producer(output.computed, workers, single ? Precision::kSingle : Precision::kDouble);
-  const std::unique_ptr<Producer> coloured = in_colours_of(*output.format, *producer, options);
-  write_table(*output.format, coloured ? *coloured : *producer, file, options);
-  workers.check();
-  file.commit();
+// With a target the file is written once to be measured, and once more with the result in it.
+void choose(Output& output, const Target& target, bool dry_run, const Workers& workers) {
+  if (dry_run) {
+    output.setting = SettingChooser(output.order, target, workers).choose(target.tolerance);
+  } else {
+    VerifiedSetting chosen = choose_verified(output.order, target, workers);
+    output.setting = std::move(chosen.setting);
+    output.error = std::move(chosen.error);
+  }
+  describe(output);
 }
 
 std::string what_stays(std::span<const Output> unwritten) {
   std::string names;
   for (const Output& output : unwritten) {
-    names += (names.empty() ? "" : ", ") + output.path.string();
+    names += (names.empty() ? "" : ", ") + output.order.name;
   }
   return names + (unwritten.size() == 1 ? " is as it was" : " are as they were");
 }
@@ -138,11 +221,12 @@ std::string what_stays(std::span<const Output> unwritten) {
 void tabulate(const TabulateOptions& options) {
   const Material material = read_material(options.material);
   const int threads = threads_of(options.threads);
+  const std::optional<Target> target = target_of(options);
   std::vector<Output> outputs;
   for (const std::string& name : options.outputs) {
     for (const FileToWrite& file : files_to_write(name, options.files)) {
       if (std::any_of(outputs.begin(), outputs.end(),
-                      [&](const Output& other) { return same_file(other.path, file.name); })) {
+                      [&](const Output& other) { return same_file(other.path(), file.name); })) {
         throw InputError("--output: " + file.name + " is given twice");
       }
       outputs.push_back(plan_output(options, material, file));
@@ -154,16 +238,24 @@ void tabulate(const TabulateOptions& options) {
   // All opened before any work, so that a wrong folder costs nothing and a dry run finds it.
   std::vector<AtomicFile> files;
   files.reserve(outputs.size());
-  for (const Output& output : outputs) files.emplace_back(output.path);
+  for (const Output& output : outputs) files.emplace_back(output.path());
   std::size_t next = 0;
   try {
     for (; next < outputs.size(); ++next) {
-      const Output& output = outputs[next];
-      const auto start = std::chrono::steady_clock::now();
-      if (!options.dry_run) write(output, files[next], workers);
-      const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-      bar.clear();
-      report(options, output, files[next].size(), elapsed.count());
+      Output& output = outputs[next];
+      if (target) choose(output, *target, options.dry_run, workers);
+      if (options.dry_run) {
+        const Prediction expected = predict_file(output.order, output.setting, workers);
+        bar.clear();
+        report(options, output, expected);
+      } else {
+        const auto start = std::chrono::steady_clock::now();
+        write_setting(output.order, output.setting, files[next], workers, output.error);
+        files[next].commit();
+        const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+        bar.clear();
+        report(options, output, files[next].size(), elapsed.count());
+      }
       // To a pipe all at once: where nobody reads it, that ends the program.
       if (::isatty(STDOUT_FILENO) != 0) std::cout.flush();
     }
@@ -195,13 +287,10 @@ void add_tabulate_command(CLI::App& program) {
       *command, "--grid", options->grid, "GRID",
       "halfdiff3d[:THxTDxPD], halfdiff4d[:THxPHxTDxPD] or inout[:TIxPIxTOxPO]; each format "
       "has its own default");
-  command
-      ->add_option(
-          "--cells", options->cells,
-          "value of a cell: point (f_r at its node, the default) or average[:REL] (mean "
-          "over the cell above the horizon, to the relative tolerance REL, 1e-3 where left "
-          "out)")
-      ->type_name("RULE");
+  add_text_option(*command, "--cells", options->cells, "RULE",
+                  "value of a cell: point (f_r at its node, the default) or average[:REL] (mean "
+                  "over the cell above the horizon, to the relative tolerance REL, 1e-3 where left "
+                  "out)");
   add_text_option(*command, "--effects", options->effects, "LIST",
                   "only these components, joined by ',': specular, internal, diffuse");
   command->add_flag("--components", options->components,
@@ -210,8 +299,18 @@ void add_tabulate_command(CLI::App& program) {
                     "the mean over rotations of the cloth: smaller files, and no weave");
   add_file_options(*command, options->files);
   add_threads_option(*command, options->threads);
+  add_text_option(*command, "--tolerance", options->tolerance, "ERROR",
+                  "choose the smallest file whose readers err by no more than this, relative "
+                  "(0.003), and measure it: grid, nodes, cells, float or half, size");
+  add_text_option(
+      *command, "--metric", options->metric, "WHICH",
+      "the error that --tolerance limits: rms (weighted by cosines, the default) or p99 "
+      "(99th percentile of relative errors)");
+  command->add_flag("--isotropic-ok", options->isotropic_ok,
+                    "--tolerance does not count what the mean over rotations loses");
   command->add_flag("--dry-run", options->dry_run,
-                    "check everything, say what would be written, write nothing");
+                    "check everything, say what would be written, the time, bytes and error that "
+                    "are expected; write nothing");
   command->add_flag("--json", options->json, "say what was written as one JSON object a line");
   command->callback([options] { tabulate(*options); });
 }

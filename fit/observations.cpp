@@ -44,8 +44,9 @@ double factor_at(Reflectance reflectance, bool folded, double h_n, double x, dou
 // The directional factor along the cells of phi_d, at one theta_h and theta_d.
 class PhiCells {
  public:
-  PhiCells(const Axis& phi_d, bool average, Reflectance reflectance)
-      : folded_(phi_d.highest_deg <= 180), reflectance_(reflectance) {
+  PhiCells(const Grid& grid, bool average, Reflectance reflectance)
+      : folded_(grid.folds_orders()), reflectance_(reflectance) {
+    const Axis& phi_d = grid.axes.back();
     for (int k = 0; k < phi_d.size; ++k) {
       if (!average) {
         cos_phi_.push_back(sincosd(phi_d.node_deg(k)).cos);
@@ -125,7 +126,7 @@ void observe_half_difference(const TableSpec& spec, Reflectance reflectance, Obs
       out.cos_theta_d.push_back(sincosd(node.angle_deg).cos);
     }
   }
-  const PhiCells cells(phi_d, average, reflectance);
+  const PhiCells cells(grid, average, reflectance);
   for (int h = 0; h < theta_h.size; ++h) {
     const std::vector<Node> h_nodes = cell_nodes(theta_h, h, average);
     const std::size_t sites = h_nodes.size() * d_nodes[0].size();

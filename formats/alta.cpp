@@ -144,6 +144,10 @@ void check_alta(const TableSpec& spec, const WriteOptions& /*none*/, const std::
   if (!spec.has_grid() && !spec.has_pairs()) {
     throw InputError(name + ": ALTA holds grids and lists of pairs, not " + spec.description());
   }
+  if (spec.has_grid() && !spec.grid().regular()) {
+    throw InputError(name + ": " + spec.description() +
+                     " is not allowed: ALTA's readers know regular axes only");
+  }
   if (spec.cell_count() > std::numeric_limits<std::int32_t>::max()) {
     throw InputError(name + ": " + spec.description() + " is not allowed: ALTA counts up to " +
                      std::to_string(std::numeric_limits<std::int32_t>::max()) + " samples");

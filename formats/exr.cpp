@@ -279,6 +279,7 @@ Format exr_format() {
           .default_samples = exr_samples,
           .colours = [](const WriteOptions&) { return Colours::kAny; },
           .keeps_description = true,
+          .keeps_listed_nodes = true,
           .averages = "",
           .precision = exr_precision,
           .check = check_exr,

@@ -11,6 +11,7 @@
 #include "support/atomic_file.h"
 #include "support/progress.h"
 #include "table/producer.h"
+#include "table/reading.h"
 #include "table/table.h"
 
 namespace clothbrdf {
@@ -54,9 +55,12 @@ struct Format {
   Samples (*default_samples)(Reflectance reflectance, bool isotropic);
   Colours (*colours)(const WriteOptions& options);
   bool keeps_description;  ///< whether a file says what its table was made of
+  bool keeps_listed_nodes =
+      false;  ///< whether axes of listed nodes, and mirrored ones, can be kept
   /// What its values are means of, for people; empty where they are those of directions.
   std::string_view averages;
   StoredPrecision (*precision)(const WriteOptions& options);
+  Reader reader = Reader::kInterpolated;  ///< what the programs do that read its files
   /// Throws InputError, in one line that starts with the file's name, where the format cannot hold
   /// the table. Options and colours are check_output's.
   void (*check)(const TableSpec& spec, const WriteOptions& options, const std::string& name);

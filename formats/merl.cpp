@@ -117,6 +117,7 @@ Format merl_format() {
           .keeps_description = false,
           .averages = "",
           .precision = [](const WriteOptions&) { return StoredPrecision{}; },
+          .reader = Reader::kNearest,
           .check = check_merl,
           .layout = own_samples,
           .write = write_merl,

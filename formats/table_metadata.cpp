@@ -1,6 +1,7 @@
 #include "formats/table_metadata.h"
 
 #include <algorithm>
+#include <functional>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -15,6 +16,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr const char* kCloth = "cloth";
+constexpr const char* kMean = "mean over rotations";
 constexpr const char* kValue = "f_r, 1/sr, without the cosine";
 
 template <class T>
@@ -22,8 +25,10 @@ struct Name {
   T value;
   const char* name;
 };
-constexpr Name<Spacing> kSpacings[] = {
-    {Spacing::kUniform, "uniform"}, {Spacing::kSquared, "squared"}, {Spacing::kNodes, "nodes"}};
+constexpr Name<Spacing> kSpacings[] = {{Spacing::kUniform, "uniform"},
+                                       {Spacing::kSquared, "squared"},
+                                       {Spacing::kNodes, "nodes"},
+                                       {Spacing::kListed, "listed"}};
 constexpr Name<GridKind> kKinds[] = {{GridKind::kHalfDifference3d, "halfdiff3d"},
                                      {GridKind::kHalfDifference4d, "halfdiff4d"},
                                      {GridKind::kInOut, "inout"}};
@@ -52,19 +57,42 @@ const char* convention_of(const Material& material) {
 }
 
 Json axis_json(const Axis& axis) {
-  return {{"name", axis.name},
-          {"unit", "deg"},
-          {"spacing", name_of(kSpacings, axis.spacing)},
-          {"size", axis.size},
-          {"from", axis.lowest_deg},
-          {"to", axis.highest_deg},
-          {"periodic", axis.periodic}};
+  Json json = {{"name", axis.name},
+               {"unit", "deg"},
+               {"spacing", name_of(kSpacings, axis.spacing)},
+               {"size", axis.size},
+               {"from", axis.lowest_deg},
+               {"to", axis.highest_deg},
+               {"periodic", axis.periodic}};
+  if (axis.mirrored) json["mirrored"] = true;
+  if (axis.spacing == Spacing::kListed) json["nodes"] = axis.listed_deg;
+  return json;
 }
 
 Axis parse_axis(const nlohmann::json& json) {
   return {json["name"].get<std::string>(), value_of(kSpacings, json["spacing"].get<std::string>()),
           json["size"].get<int>(),         json["from"].get<double>(),
-          json["to"].get<double>(),        json["periodic"].get<bool>()};
+          json["to"].get<double>(),        json["periodic"].get<bool>(),
+          json.value("mirrored", false),   json.value("nodes", std::vector<double>{})};
+}
+
+bool ascend_within(const Axis& axis) {
+  const std::vector<double>& nodes = axis.listed_deg;
+  return nodes.size() == static_cast<std::size_t>(axis.size) &&
+         std::adjacent_find(nodes.begin(), nodes.end(), std::greater_equal<>()) == nodes.end() &&
+         nodes.front() >= axis.lowest_deg && nodes.back() <= axis.highest_deg;
+}
+
+// An axis of listed nodes: theta from 0 to 90 as it is, phi mirrored after 90 or 180 degrees, where
+// phi_h may begin at the weave's rotation.
+bool known_listed(const Axis& axis) {
+  const double range = axis.highest_deg - axis.lowest_deg;
+  if (axis.periodic || !ascend_within(axis)) return false;
+  if (axis.name.starts_with("theta")) {
+    return !axis.mirrored && axis.lowest_deg == 0 && axis.highest_deg == 90;
+  }
+  return axis.mirrored && (range == 90 || range == 180) &&
+         (axis.lowest_deg == 0 || axis.name == "phi_h");
 }
 
 // A grid must be one that this program can make, whatever its sizes.
@@ -77,14 +105,18 @@ Grid parse_grid_json(const nlohmann::json& json, const std::string& name) {
   }
   if (cells <= kMaxCells &&
       grid.axes.size() == (grid.kind == GridKind::kHalfDifference3d ? 3U : 4U)) {
-    Grid known = parse_grid(grid.description(), grid.axes.back().highest_deg);
-    // A measured cloth need not look the same turned by half a turn.
     constexpr double kWholeTurn = 360;
+    const double period = grid.axes.back().period_deg();
+    Grid known = parse_grid(grid.sizes(), period);
+    // A measured cloth need not look the same turned by half a turn.
     if (grid.kind == GridKind::kHalfDifference4d && grid.axes[1].highest_deg == kWholeTurn) {
       known.axes[1].highest_deg = kWholeTurn;
     }
-    const double phi_d_range = known.axes.back().highest_deg;
-    if (grid == known && (phi_d_range == kWholeTurn || phi_d_range == kWholeTurn / 2)) return grid;
+    for (std::size_t a = 0; a < grid.axes.size() && grid.kind != GridKind::kInOut; ++a) {
+      const Axis& axis = grid.axes[a];
+      if (axis.name == known.axes[a].name && known_listed(axis)) known.axes[a] = axis;
+    }
+    if (grid == known && (period == kWholeTurn || period == kWholeTurn / 2)) return grid;
   }
   throw InputError(name + ": /grid/axes: not the axes of a " + json["kind"].get<std::string>() +
                    " grid");
@@ -115,6 +147,12 @@ std::string table_metadata(const TableSpec& spec) {
   json["effects"] = Json::array();
   for (const EffectName& effect : kEffectNames) {
     if (from.effects.*effect.member) json["effects"].push_back(effect.name);
+  }
+  if (from.error) {
+    const MeasuredError& e = *from.error;
+    json["error"] = {{"rms", e.error.rms}, {"p99", e.error.p99},
+                     {"max", e.error.max}, {"reader", e.reader},
+                     {"pairs", e.pairs},   {"against", e.of_mean ? kMean : kCloth}};
   }
   if (from.material) json["material"] = Json::parse(material_to_json(*from.material));
   return json.dump();
@@ -147,6 +185,14 @@ TableSpec parse_table_metadata(std::string_view text, const std::string& name) {
   spec.provenance.program = json["program"].get<std::string>();
   if (json.contains("material"))
     spec.provenance.material = parse_material(json["material"].dump(), name + ": /material");
+  if (json.contains("error")) {
+    const nlohmann::json& e = json["error"];
+    spec.provenance.error = {
+        {e["rms"].get<double>(), e["p99"].get<double>(), e["max"].get<double>()},
+        e["reader"].get<std::string>(),
+        e["pairs"].get<std::size_t>(),
+        e["against"] == kMean};
+  }
   if (json.contains("convention")) {
     const auto& material = spec.provenance.material;
     if (!material || json["convention"] != convention_of(*material)) {

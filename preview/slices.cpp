@@ -16,12 +16,12 @@ std::string degrees_text(double angle_deg) {
 }
 
 int nearest(const Axis& axis, double angle_deg) {
-  const double period = axis.highest_deg - axis.lowest_deg;
   int best = 0;
   double least = INFINITY;
   for (int k = 0; k < axis.size; ++k) {
-    const double away = axis.node_deg(k) - angle_deg;
-    const double distance = std::abs(axis.periodic ? std::remainder(away, period) : away);
+    const double away = axis.node_deg(k) - axis.folded_deg(angle_deg);
+    const double distance =
+        std::abs(axis.periodic ? std::remainder(away, axis.period_deg()) : away);
     // Rounding must not decide between two nodes at the same distance.
     constexpr double kSame = 1e-9;
     if (distance < least - kSame) {

@@ -76,8 +76,10 @@ void integrate_half_vectors(const Table& table, const Vector3<double>& wi,
   int azimuths = kIsotropicAzimuths;
   if (grid.kind == GridKind::kHalfDifference4d) {
     const Axis& phi_h = grid.axes[1];
-    azimuths = std::max(kFewestAzimuths,
-                        2 * phi_h.size * static_cast<int>(std::lround(360 / phi_h.highest_deg)));
+    azimuths =
+        std::max(kFewestAzimuths,
+                 2 * phi_h.size *
+                     static_cast<int>(std::lround(360 / (phi_h.highest_deg - phi_h.lowest_deg))));
   }
   const std::vector<Step> phis = even_steps(360, azimuths);
   std::vector<double> sample(albedo.size() + 1);

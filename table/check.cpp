@@ -14,8 +14,8 @@ constexpr double kArithmetic = 1e-12;
 std::optional<std::size_t> node_at(const Axis& axis, double angle_deg) {
   const std::optional<int> k = axis.cell_of(angle_deg);
   if (!k) return std::nullopt;
-  const double off = std::remainder(axis.node_deg(*k) - angle_deg,
-                                    axis.periodic ? axis.highest_deg - axis.lowest_deg : 1e6);
+  const double off = std::remainder(axis.node_deg(*k) - axis.folded_deg(angle_deg),
+                                    axis.periodic ? axis.period_deg() : 1e6);
   if (std::abs(off) > kSameAngle) return std::nullopt;
   return static_cast<std::size_t>(*k);
 }
@@ -46,8 +46,7 @@ std::optional<std::size_t> mirror_cell(const Grid& grid, std::size_t cell) {
 ReciprocityCheck check_reciprocity(const Table& table) {
   const TableSpec& spec = table.spec();
   ReciprocityCheck result;
-  result.by_construction = spec.has_grid() && spec.grid().kind != GridKind::kInOut &&
-                           spec.grid().axes.back().highest_deg <= 180;
+  result.by_construction = spec.has_grid() && spec.grid().folds_orders();
   const std::optional<Material>& material = spec.provenance.material;
   result.promised = material && material->reflectance == Reflectance::kMicrofacet;
   result.allowed = 4 * table.precision().relative + kArithmetic;

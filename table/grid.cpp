@@ -92,6 +92,14 @@ bool cell_above_horizon(const Grid& grid, std::size_t cell, CellPart part) {
 
 }  // namespace
 
+Directions from_half_difference(const SinCos<double>& theta_h, const SinCos<double>& phi_h,
+                                const Vector3<double>& wd) {
+  const auto to_cloth = [&](const Vector3<double>& v) {
+    return turned(rotate_y(v, theta_h), phi_h);
+  };
+  return {to_cloth(wd), to_cloth({-wd[0], -wd[1], wd[2]})};
+}
+
 std::size_t Grid::cell_count() const {
   return std::accumulate(
       axes.begin(), axes.end(), std::size_t{1},
@@ -123,10 +131,7 @@ Directions Grid::directions(std::size_t cell) const {
   const SinCos<double> theta_h = sincosd(angle[0]);
   const SinCos<double> phi_h = sincosd(anisotropic ? angle[1] : 0.0);
   const Vector3<double> wd = direction(angle[anisotropic ? 2 : 1], angle[anisotropic ? 3 : 2]);
-  const auto to_cloth = [&](const Vector3<double>& v) {
-    return turned(rotate_y(v, theta_h), phi_h);
-  };
-  return {to_cloth(wd), to_cloth({-wd[0], -wd[1], wd[2]})};
+  return from_half_difference(theta_h, phi_h, wd);
 }
 
 bool Grid::node_above_horizon(std::size_t cell) const {
@@ -169,7 +174,7 @@ std::array<double, 4> Grid::angles(const Vector3<double>& wi, const Vector3<doub
   const double phi_h = h[0] == 0 && h[1] == 0 ? 0 : azimuth_deg(h);
   const Vector3<double> wd = rotate_y(turned(wi, sincosd(-phi_h)), sincosd(-theta_h));
   double phi_d = azimuth_deg(wd);
-  if (axes.back().highest_deg <= 180 && phi_d >= 180) phi_d -= 180;
+  if (folds_orders() && phi_d >= 180) phi_d -= 180;
   const double theta_d = std::min(elevation_deg(wd), 90.0);
   if (kind == GridKind::kHalfDifference4d) return {theta_h, phi_h, theta_d, phi_d};
   return {theta_h, theta_d, phi_d, 0};
@@ -215,12 +220,25 @@ std::string Grid::place(std::size_t cell) const {
   return text.str();
 }
 
-std::string Grid::description() const {
+bool Grid::folds_orders() const {
+  const double period = axes.back().period_deg();
+  return kind != GridKind::kInOut && period > 0 && period <= 180;
+}
+
+bool Grid::regular() const {
+  return std::none_of(axes.begin(), axes.end(), [](const Axis& axis) {
+    return axis.mirrored || axis.spacing == Spacing::kListed;
+  });
+}
+
+std::string Grid::sizes() const {
   std::string text = kind_of(kind).name;
   for (std::size_t a = 0; a < axes.size(); ++a)
     text += (a == 0 ? ":" : "x") + std::to_string(axes[a].size);
   return text;
 }
+
+std::string Grid::description() const { return regular() ? sizes() : sizes() + " at chosen nodes"; }
 
 Grid halfdiff3d(int theta_h, int theta_d, int phi_d, double phi_d_range_deg) {
   return halfdiff(GridKind::kHalfDifference3d, {theta_h, theta_d, phi_d}, phi_d_range_deg);

@@ -32,6 +32,11 @@ struct Directions {
   bool above_horizon() const { return wi[2] > 0 && wo[2] > 0; }
 };
 
+/// The pair that a half vector and the light around it stand for, wd in the frame whose pole is the
+/// half vector.
+Directions from_half_difference(const SinCos<double>& theta_h, const SinCos<double>& phi_h,
+                                const Vector3<double>& wd);
+
 /// A regular set of cells over pairs of directions. Cells are counted with the last axis fastest. A
 /// row is a run of cells that share all but the last two axes: one half vector, or one direction to
 /// the light.
@@ -77,7 +82,17 @@ struct Grid {
   /// Where the node of a cell is, for messages: "theta_h 0.25 theta_d 1 phi_d 90", in degrees.
   std::string place(std::size_t cell) const;
 
-  /// As --grid takes it, for instance "halfdiff3d:90x90x180".
+  /// Whether an axis of half/difference angles holds f(wi, wo) and f(wo, wi) in one cell: phi_d
+  /// repeats itself after 180 degrees.
+  bool folds_orders() const;
+
+  /// Whether all axes are as --grid makes them: no listed nodes, none mirrored.
+  bool regular() const;
+
+  /// Kind and sizes, for instance "halfdiff3d:90x90x180".
+  std::string sizes() const;
+
+  /// As --grid takes it, the same as sizes(); irregular grids add "at chosen nodes".
   std::string description() const;
 
   bool operator==(const Grid&) const = default;

@@ -18,7 +18,7 @@ namespace {
 
 bool tells_orders_apart(const TableSpec& spec) {
   if (!spec.has_grid()) return true;
-  return spec.grid().kind == GridKind::kInOut || spec.grid().axes.back().highest_deg > 180;
+  return !spec.grid().folds_orders();
 }
 
 // Means of valid, finite cells, which are taken one after the other.
@@ -87,8 +87,9 @@ void add_rotations(const Table& source, const Directions& d, int rotations,
   }
 }
 
-// The mean over rotations of the cloth, at the nodes of the source's azimuths: a half/difference
-// table without phi_h, or an in/out table with one phi_i, which stands for any.
+// The mean over rotations of the cloth, at the nodes of the source's azimuths (as many even steps
+// where these are not even): a half/difference table without phi_h, or an in/out table with one
+// phi_i, which stands for any.
 Table isotropic_mean(const Table& source, const Workers& workers) {
   const Grid& from = source.spec().grid();
   Grid to = from;
@@ -103,6 +104,10 @@ Table isotropic_mean(const Table& source, const Workers& workers) {
     return [&, mean = Mean(channels), sample = std::vector<double>(channels)](
                std::size_t cell, std::vector<double>& values) mutable {
       const Directions d = to.directions(cell);
+      if (!from.regular()) {
+        add_rotations(source, d, rotation_count(source.spec()), sample, mean);
+        return mean.take(values);
+      }
       for (int k = 0; k < from.axes[1].size; ++k) {
         const SinCos<double> turn = sincosd(from.axes[1].node_deg(k));
         if (source.interpolate({turned(d.wi, turn), turned(d.wo, turn)}, sample)) mean.add(sample);
@@ -127,7 +132,8 @@ int rotation_count(const TableSpec& source) {
   if (source.isotropic()) return 1;
   if (!source.has_grid()) return kWithoutGrid;
   const Axis& azimuth = source.grid().axes[1];
-  return azimuth.size * static_cast<int>(std::lround(360 / azimuth.highest_deg));
+  return azimuth.size *
+         static_cast<int>(std::lround(360 / (azimuth.highest_deg - azimuth.lowest_deg)));
 }
 
 bool averages_rotations(const TableSpec& source, const TableSpec& target) {
@@ -142,6 +148,7 @@ Table resample(const Table& source, const Samples& samples, const Workers& worke
   if (source.spec().samples == samples) return source;
   TableSpec target = source.spec();
   target.samples = samples;
+  target.provenance.error.reset();
   const bool isotropic = averages_rotations(source.spec(), target);
   std::optional<Table> mean;
   // Cheaper than a mean for each node of the target.

@@ -24,16 +24,6 @@ double density_of_half_vector(double cos_theta_h) {
 }
 double density_of_difference(double cos_theta_d) { return 0.25 / (kPi * std::sqrt(cos_theta_d)); }
 
-Directions from_half_difference(const SinCos<double>& theta_h, const SinCos<double>& phi_h,
-                                const Vector3<double>& wd) {
-  const auto to_cloth = [&](const Vector3<double>& v) {
-    return turned(
-        {v[0] * theta_h.cos + v[2] * theta_h.sin, v[1], v[2] * theta_h.cos - v[0] * theta_h.sin},
-        phi_h);
-  };
-  return {to_cloth(wd), to_cloth({-wd[0], -wd[1], wd[2]})};
-}
-
 struct Difference {
   double relative;
   double share;

@@ -1,12 +1,12 @@
 #include "table/table.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
 
 #include "table/nearest_sample.h"
+#include "table/stencil.h"
 
 namespace clothbrdf {
 namespace {
@@ -61,37 +61,15 @@ bool Table::interpolate(const Directions& directions, std::span<double> values) 
     if (!finite) std::fill(values.begin(), values.end(), 0.0);
     return finite;
   }
-  const std::vector<Axis>& axes = spec_.grid().axes;
-  std::array<double, 4> angle = spec_.grid().angles(directions.wi, directions.wo);
-  // One azimuth of the light stands for any: the eye's is seen from it.
-  if (spec_.grid().kind == GridKind::kInOut && axes[1].size == 1) angle[3] -= angle[1];
-  std::array<std::array<std::size_t, 2>, 4> index{};  // the nodes on both sides
-  std::array<double, 4> upper_share{};
-  for (std::size_t a = 0; a < axes.size(); ++a) {
-    const int size = axes[a].size;
-    double at = axes[a].coordinate(angle[a]);
-    if (!axes[a].periodic) at = std::clamp(at, 0.0, size - 1.0);
-    const double lower = std::floor(at);
-    upper_share[a] = at - lower;
-    for (int side = 0; side < 2; ++side) {
-      const int k = static_cast<int>(lower) + side;
-      const int wrapped = ((k % size) + size) % size;
-      index[a][static_cast<std::size_t>(side)] =
-          static_cast<std::size_t>(axes[a].periodic ? wrapped : std::min(k, size - 1));
-    }
-  }
+  const Stencil around = linear_stencil(spec_.grid(), directions);
   double total = 0;
-  for (std::size_t corner = 0; corner < std::size_t{1} << axes.size(); ++corner) {
-    double weight = 1;
-    std::size_t cell = 0;
-    for (std::size_t a = 0; a < axes.size(); ++a) {
-      const std::size_t side = corner >> a & 1U;
-      weight *= side == 1 ? upper_share[a] : 1 - upper_share[a];
-      cell = cell * static_cast<std::size_t>(axes[a].size) + index[a][side];
+  for (std::size_t k = 0; k < around.count; ++k) {
+    const std::size_t cell = around.cells[k];
+    if (!valid(cell) || !finite(cell)) continue;
+    for (std::size_t c = 0; c < values.size(); ++c) {
+      values[c] += around.weights[k] * value(cell, c);
     }
-    if (weight == 0 || !valid(cell) || !finite(cell)) continue;
-    for (std::size_t c = 0; c < values.size(); ++c) values[c] += weight * value(cell, c);
-    total += weight;
+    total += around.weights[k];
   }
   if (total <= kAngleRounding) {
     std::fill(values.begin(), values.end(), 0.0);

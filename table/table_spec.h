@@ -9,6 +9,7 @@
 #include "model/effects.h"
 #include "model/material.h"
 #include "table/grid.h"
+#include "table/sampled_error.h"
 
 namespace clothbrdf {
 
@@ -39,12 +40,23 @@ struct CellRule {
   bool operator==(const CellRule&) const = default;
 };
 
+/// How far a file is from what it was made of, as measured on what was written.
+struct MeasuredError {
+  TableError error;
+  std::string reader;     ///< "nearest", "linear" or the rule of the format's own
+  std::size_t pairs = 0;  ///< how many were compared
+  bool of_mean = false;   ///< against the mean over rotations of the cloth, not the cloth itself
+
+  bool operator==(const MeasuredError&) const = default;
+};
+
 /// Where the values come from.
 struct Provenance {
   std::optional<Material> material;
   Effects effects;
   std::string program;    ///< "clothbrdf 0.1.0"; empty for measured data
   std::string note = {};  ///< for people: what a reader had to assume, or left out
+  std::optional<MeasuredError> error = {};  ///< of the file; none once values were changed
 
   bool operator==(const Provenance&) const = default;
 };

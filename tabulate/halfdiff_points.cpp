@@ -48,7 +48,7 @@ HalfDifferencePoints::HalfDifferencePoints(const TableSpec& spec, const ClothMod
       model_(model),
       theta_d_(node_sincos(spec.grid().axes[spec.grid().axes.size() - 2])),
       cos_phi_d_(cosines(node_sincos(spec.grid().axes.back()))),
-      folded_(spec.grid().axes.back().highest_deg <= 180),
+      folded_(spec.grid().folds_orders()),
       paths_(model, cosines(theta_d_), workers) {}
 
 void HalfDifferencePoints::fill_rows(std::size_t first_row, std::span<double> values) const {

@@ -92,7 +92,7 @@ void check_producible(const TableSpec& spec) {
           "--cells average: not for a material of reflectance 'paper', where the mean over cells "
           "at the horizon diverges; use --cells point");
     }
-    if (spec.grid().kind != GridKind::kInOut && spec.grid().axes.back().highest_deg > 180) {
+    if (spec.grid().kind != GridKind::kInOut && !spec.grid().folds_orders()) {
       throw InputError("averages of a reciprocal table are made for phi_d from 0 to 180 degrees");
     }
   }

@@ -1,0 +1,32 @@
+#pragma once
+
+#include "cost/choice.h"
+
+namespace clothbrdf {
+
+/// A setting, and its error as measured on a file that was read back.
+struct VerifiedSetting {
+  FileSetting setting;
+  MeasuredError error;
+};
+
+/// The cheapest setting that meets the target on fresh pairs too: what was chosen is written,
+/// read back and measured, and chosen anew, closer, where it misses. Throws WorkError where that
+/// fails.
+VerifiedSetting choose_verified(const FileOrder& order, const Target& target,
+                                const Workers& workers);
+
+/// What a file is expected to cost.
+struct Prediction {
+  double seconds = 0;
+  std::uint64_t bytes = 0;
+  MeasuredError error;       ///< of tables without phi_h against the mean over rotations
+  double isotropy_loss = 0;  ///< rms between that mean and the cloth; of other tables 0
+};
+
+/// Of large grids of points from files with fewer theta_h (rows cost alike) and the model at random
+/// pairs; other files are made whole, in one without a name, and thrown away. Within a factor of
+/// two of what a run then takes.
+Prediction predict_file(const FileOrder& order, const FileSetting& setting, const Workers& workers);
+
+}  // namespace clothbrdf
