@@ -9,8 +9,8 @@ namespace clothbrdf {
 
 /// Measures every setting, one after the other: writes a file without a name into the scratch
 /// folder, reads it back, and compares what its reader finds with the model. Up to three minutes on
-/// two cores, 2 GB of memory and 400 MB of disk. Errors are the same bits each time. Counts settings
-/// into the workers' progress; throws Cancelled.
+/// two cores, 2 GB of memory and 400 MB of disk. Errors are the same bits each time. Counts
+/// settings into the workers' progress; throws Cancelled.
 CostReport measure_cost(const Material& material, const std::filesystem::path& scratch_folder,
                         const Workers& workers);
 
