@@ -90,15 +90,25 @@ void add_targets(std::span<const CostSetting> settings, const std::string& front
   }
 }
 
+/// Differences that timings of the same work show, too, are none.
+std::string saving(const CostSetting& setting, const CostSetting& all) {
+  constexpr double kNoticed = 0.05;
+  const Timing& a = setting.seconds;
+  const Timing& b = all.seconds;
+  const double change = a.median / b.median - 1;
+  if (std::abs(change) < kNoticed || (a.lowest <= b.highest && b.lowest <= a.highest))
+    return "saves no time";
+  return change < 0 ? "saves " + percent(-change) + " of the time"
+                    : "takes " + percent(change) + " more time";
+}
+
 void add_evaluations(std::span<const CostSetting> settings, std::vector<std::string>& said) {
   const auto all = std::find_if(settings.begin(), settings.end(),
                                 [](const CostSetting& s) { return s.name == kAllPaths; });
   if (all == settings.end()) return;
   const auto add = [&](const CostSetting& setting, const std::string& what) {
-    const double change = setting.seconds.median / all->seconds.median - 1;
-    said.push_back(what + (change <= 0 ? " saves " : " takes ") + percent(std::abs(change)) +
-                   (change <= 0 ? " of the time" : " more time") + " and costs " +
-                   percent(setting.error.rms) + " rms");
+    said.push_back(what + " " + saving(setting, *all) + " and costs " + percent(setting.error.rms) +
+                   " rms");
   };
   for (const CostSetting& setting : settings) {
     if (setting.dial == "paths" && setting.name != kAllPaths)

@@ -34,7 +34,8 @@ template <class T>
 class BatchEvaluator {
  public:
   /// Prepares tables: some milliseconds for three channels. Keeps a reference to the model. A
-  /// tolerance above the default, up to 0.1, needs fewer lanes; one below it is not met.
+  /// tolerance above the default, up to 0.1, needs fewer lanes (before they are padded) and pieces;
+  /// one below it is not met.
   BatchEvaluator(const ClothModel<double>& model, std::vector<Channel> channels, Workers workers,
                  double tolerance = kBatchTolerance<T>);
 

@@ -130,7 +130,7 @@ TEST_CASE("the rounding of halves explains a grid that stops getting better") {
 TEST_CASE("the ratio of layers is found, and expected from the yarn and channel absorbing least") {
   const auto law = [](double absorption, double ratio) {
     std::vector<CostSetting> settings;
-    for (int n = 0; n < 6; ++n)
+    for (int n = 1; n < 6; ++n)
       settings.push_back(evaluation("layers kept", n, 0.2 * std::pow(ratio, n)));
     const std::vector<Convergence> laws = convergence(absorbing(absorption), settings);
     REQUIRE(laws.size() == 1);
@@ -139,8 +139,8 @@ TEST_CASE("the ratio of layers is found, and expected from the yarn and channel 
   CHECK(std::abs(law(0.3, 0.3).fitted - 0.3) <= kFitted);
   CHECK(law(0.3, 0.3).law == "rms ~ ratio^layers");
   CHECK(law(0.3, 0.3).dial == "layers kept");
-  // Next to opaque layers only add what passes one more twice: exp(-2 absorption) t^4, whatever the
-  // other sums do. Six layers are then as good as infinitely many.
+  // Next to opaque layers add light that is reflected once, after passing one layer more twice:
+  // exp(-2 absorption) t^4. Six of them are as good as infinitely many.
   const double r = 0.04;
   const double expected = std::exp(-2 * 1.9) * std::pow(1 - r, 4);
   const Convergence dark = law(1.9, expected);

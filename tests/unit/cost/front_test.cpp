@@ -104,13 +104,18 @@ TEST_CASE("what simpler models save is told against all paths") {
   std::vector<CostSetting> settings = {
       of_dial("paths", setting("evaluation", kAllPaths, 0.2, 0), 0),
       of_dial("paths", setting("evaluation", "single paths", 0.15, 0.023), 0),
-      of_dial("layers kept", setting("evaluation", "1 of 2 layers kept", 0.22, 0.004), 1),
-      of_dial("layers kept", setting("evaluation", "0 of 2 layers kept", 0.1, 0.3), 0)};
+      of_dial("layers kept", setting("evaluation", "1 of 3 layers kept", 0.22, 0.004), 1),
+      of_dial("layers kept", setting("evaluation", "0 of 3 layers kept", 0.1, 0.3), 0),
+      of_dial("layers kept", setting("evaluation", "2 of 3 layers kept", 0.196, 0.001), 2),
+      of_dial("paths", setting("evaluation", "noisy paths", 0.17, 0.02), 0)};
+  settings.back().seconds.highest = 0.2;
   mark_fronts(settings);
   CHECK(sentences(settings) ==
         Strings{"single paths in place of all paths saves 25 % of the time and costs 2.3 % rms",
-                "0 of 2 layers kept: saves 50 % of the time and costs 30 % rms",
-                "1 of 2 layers kept: takes 10 % more time and costs 0.4 % rms"});
+                "noisy paths in place of all paths saves no time and costs 2 % rms",
+                "0 of 3 layers kept: saves 50 % of the time and costs 30 % rms",
+                "1 of 3 layers kept: takes 10 % more time and costs 0.4 % rms",
+                "2 of 3 layers kept: saves no time and costs 0.1 % rms"});
 }
 
 TEST_CASE("chosen nodes are compared with uniform axes at an error that both reach") {
