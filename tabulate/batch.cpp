@@ -8,20 +8,19 @@
 namespace clothbrdf {
 namespace {
 
-// Together with what rounding adds, below what is promised.
+// Shares of the tolerance. Together with what rounding adds, below what is promised.
+constexpr double kLobeShare = 0.2;
 template <class T>
-constexpr double kLobeTolerance = sizeof(T) == sizeof(float) ? 1e-6 : 2e-13;
-template <class T>
-constexpr double kTableTolerance = sizeof(T) == sizeof(float) ? 2.5e-6 : 7e-13;
+constexpr double kTableShare = sizeof(T) == sizeof(float) ? 0.5 : 0.7;
 
 }  // namespace
 
 template <class T>
 BatchEvaluator<T>::BatchEvaluator(const ClothModel<double>& model, std::vector<Channel> channels,
-                                  Workers workers)
-    : lanes_(model, std::move(channels), kLobeTolerance<T>) {
-  if (lanes_.error() <= kLobeTolerance<T>)
-    table_ = weight_table<T>(lanes_, kTableTolerance<T>, workers);
+                                  Workers workers, double tolerance)
+    : lanes_(model, std::move(channels), kLobeShare * tolerance) {
+  if (lanes_.error() <= kLobeShare * tolerance)
+    table_ = weight_table<T>(lanes_, kTableShare<T> * tolerance, workers);
   weft_.assign(table_.lanes, T(1));
   warp_.assign(table_.lanes, T(1));
   for (std::size_t l = 0; l < lanes_.size() && tabulated(); ++l) {

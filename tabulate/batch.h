@@ -18,19 +18,26 @@ struct DirectionArrays {
   std::size_t count;
 };
 
+/// What a BatchEvaluator promises unless it is asked for less.
+template <class T>
+inline constexpr double kBatchTolerance = sizeof(T) == sizeof(float) ? 5e-6 : 1e-12;
+
 /// f_r (1/sr, without the cosine) at many arbitrary pairs of directions, near the machine's limit:
 /// no exponential, power or path sum is left for a pair. In vector registers of any width, chosen
 /// when the program runs.
 ///
-/// Error against the model, relative to the sum of a channel's directional and constant parts:
-/// float 5e-6, double 1e-12, times max(1, condition number of the lobe): how much h / axis
-/// magnifies the rounding of the directions themselves. 0 where a direction is on or below the
-/// horizon.
+/// Error against the model, relative to the sum of a channel's directional and constant parts: the
+/// tolerance (float 5e-6, double 1e-12), times max(1, condition number of the lobe): how much
+/// h / axis magnifies the rounding of the directions themselves. 0 where a direction is on or below
+/// the horizon.
 template <class T>
 class BatchEvaluator {
  public:
-  /// Prepares tables: some milliseconds for three channels. Keeps a reference to the model.
-  BatchEvaluator(const ClothModel<double>& model, std::vector<Channel> channels, Workers workers);
+  /// Prepares tables: some milliseconds for three channels. Keeps a reference to the model. A
+  /// tolerance above the default, up to 0.1, needs fewer lanes (before they are padded) and pieces;
+  /// one below it is not met.
+  BatchEvaluator(const ClothModel<double>& model, std::vector<Channel> channels, Workers workers,
+                 double tolerance = kBatchTolerance<T>);
 
   /// For tests and benchmarks: the kernel to use, an index of batch_targets().
   void choose_target(std::size_t target) { target_ = target; }
