@@ -8,6 +8,7 @@
 
 #include "cost/convergence.h"
 #include "cost/fidelity.h"
+#include "cost/file_order.h"
 #include "cost/front.h"
 #include "cost/plan.h"
 #include "cost/prediction.h"
