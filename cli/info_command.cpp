@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "cli/commands.h"
+#include "cli/measured_error.h"
 #include "cli/options.h"
 #include "formats/format.h"
 #include "formats/material_json.h"
@@ -88,6 +89,7 @@ Json table_info(const std::string& file, const Format& format, const Table& tabl
     info["made_by"] = spec.provenance.program;
     info["effects"] = effects_text(spec.provenance.effects);
   }
+  if (spec.provenance.error) info["error"] = error_json(*spec.provenance.error);
   if (!spec.provenance.note.empty()) info["note"] = spec.provenance.note;
   if (spec.provenance.material) {
     if (spec.provenance.material->reflectance == Reflectance::kPaper) info["note"] = kNotReciprocal;

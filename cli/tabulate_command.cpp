@@ -2,13 +2,10 @@
 
 #include <algorithm>
 #include <chrono>
-#include <iomanip>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -16,16 +13,13 @@
 #include "cli/file_options.h"
 #include "cli/options.h"
 #include "cli/progress_bar.h"
+#include "cli/table_output.h"
 #include "cost/verified.h"
-#include "formats/format.h"
-#include "formats/format_colours.h"
 #include "formats/material_json.h"
 #include "support/errors.h"
 
 namespace clothbrdf {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct TabulateOptions {
   std::string material;
@@ -43,33 +37,6 @@ struct TabulateOptions {
   bool dry_run = false;
   bool json = false;
 };
-
-struct Output {
-  FileOrder order;
-  FileSetting setting;
-  TableSpec spec;    // in the file's colours
-  std::string note;  // what this file cannot hold of the material
-  std::optional<MeasuredError> error;
-
-  std::filesystem::path path() const { return order.name; }
-};
-
-std::string what_is_lost(const Material& material, const TableSpec& computed,
-                         const TableSpec& written, const Format& format) {
-  std::vector<std::string> lost;
-  if (written.isotropic()) lost.emplace_back("isotropic: the mean over phi_h");
-  const bool folded = written.has_grid() && written.grid().folds_orders();
-  if (material.reflectance == Reflectance::kPaper && folded) {
-    lost.emplace_back("not reciprocal: the mean of both orders of the directions");
-  }
-  if (!format.averages.empty()) lost.emplace_back(format.averages);
-  if (const std::string colours = colours_note(computed, written); !colours.empty()) {
-    lost.push_back(colours);
-  }
-  std::string note;
-  for (const std::string& what : lost) note += (note.empty() ? "" : "; ") + what;
-  return note;
-}
 
 // Throws InputError where options contradict each other.
 std::optional<Target> target_of(const TabulateOptions& options) {
@@ -97,16 +64,8 @@ std::optional<Target> target_of(const TabulateOptions& options) {
   return target;
 }
 
-// Looks at the output with the setting that it has now.
-void describe(Output& output) {
-  const FileOrder& order = output.order;
-  const TableSpec computed = computed_spec(order, output.setting);
-  output.spec = in_colours_of(*order.format, computed, output.setting.options);
-  output.note = what_is_lost(order.material, computed, output.spec, *order.format);
-}
-
-Output plan_output(const TabulateOptions& options, const Material& material,
-                   const FileToWrite& file) {
+TableOutput plan_output(const TabulateOptions& options, const Material& material,
+                        const FileToWrite& file) {
   const Format& format = format_for(file.name);
   Samples samples = format.default_samples(material.reflectance, options.isotropic);
   if (options.grid) {
@@ -115,7 +74,7 @@ Output plan_output(const TabulateOptions& options, const Material& material,
     samples = parse_grid(*options.grid, once_around ? 360 : 180);
   }
   const Effects effects = options.effects ? parse_effects(*options.effects) : Effects{};
-  Output output{
+  TableOutput output{
       {material, effects, options.components, &format, file.options, options.isotropic, file.name},
       {std::move(samples), parse_cells(options.cells.value_or("point")), file.options},
       {},
@@ -126,80 +85,8 @@ Output plan_output(const TabulateOptions& options, const Material& material,
   return output;
 }
 
-Json error_json(const MeasuredError& measured) {
-  return {
-      {"rms", measured.error.rms}, {"p99", measured.error.p99},
-      {"max", measured.error.max}, {"reader", measured.reader},
-      {"pairs", measured.pairs},   {"against", measured.of_mean ? "mean over rotations" : "cloth"}};
-}
-
-std::string error_text(const MeasuredError& measured) {
-  std::ostringstream text;
-  text << std::setprecision(3) << "error read " << measured.reader
-       << (measured.of_mean ? ", against the mean over rotations" : "") << ": rms "
-       << measured.error.rms << ", p99 " << measured.error.p99 << ", max " << measured.error.max;
-  return text.str();
-}
-
-void report_json(const Output& output, const Json& cost) {
-  const Layout layout = output.order.format->layout(output.spec, output.setting.options);
-  Json line = {{"file", output.order.name},
-               {"format", output.order.format->name},
-               {"grid", layout.description},
-               {"cells", layout.cells},
-               {"channels", output.spec.channels.size()}};
-  line.update(cost);
-  if (!output.note.empty()) line["note"] = output.note;
-  std::cout << line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
-}
-
-void report_text(const Output& output, const std::string& cost) {
-  const Layout layout = output.order.format->layout(output.spec, output.setting.options);
-  std::cout << output.order.name << ": " << output.order.format->name << ' ' << layout.description
-            << (output.setting.options.half ? " of half floats" : "") << ", "
-            << with_commas(layout.cells) << " cells of " << output.spec.channels.size()
-            << " channels, " << cost;
-  if (!output.note.empty()) std::cout << " (" << output.note << ')';
-  std::cout << '\n';
-}
-
-std::string cost_text(std::uint64_t bytes, double seconds) {
-  std::ostringstream text;
-  text << with_commas(bytes) << " bytes in " << std::setprecision(3) << seconds << " s";
-  return text.str();
-}
-
-void report(const TabulateOptions& options, const Output& output, std::uint64_t bytes,
-            double seconds) {
-  if (options.json) {
-    Json cost = {{"bytes", bytes}, {"seconds", seconds}};
-    if (output.error) cost["error"] = error_json(*output.error);
-    report_json(output, cost);
-  } else {
-    report_text(output, cost_text(bytes, seconds) +
-                            (output.error ? "; " + error_text(*output.error) : std::string()));
-  }
-}
-
-void report(const TabulateOptions& options, const Output& output, const Prediction& expected) {
-  const bool mean_only = expected.isotropy_loss > 0;
-  if (options.json) {
-    Json predicted = {{"seconds", expected.seconds},
-                      {"bytes", expected.bytes},
-                      {"error", error_json(expected.error)}};
-    if (mean_only) predicted["isotropy_loss"] = expected.isotropy_loss;
-    report_json(output, {{"predicted", predicted}});
-    return;
-  }
-  std::ostringstream text;
-  text << "not written (dry run); expected: " << cost_text(expected.bytes, expected.seconds) << "; "
-       << error_text(expected.error) << std::setprecision(3);
-  if (mean_only) text << "; the mean over rotations loses " << expected.isotropy_loss << " rms";
-  report_text(output, text.str());
-}
-
 // With a target the file is written once to be measured, and once more with the result in it.
-void choose(Output& output, const Target& target, bool dry_run, const Workers& workers) {
+void choose(TableOutput& output, const Target& target, bool dry_run, const Workers& workers) {
   if (dry_run) {
     output.setting = SettingChooser(output.order, target, workers).choose(target.tolerance);
   } else {
@@ -210,9 +97,9 @@ void choose(Output& output, const Target& target, bool dry_run, const Workers& w
   describe(output);
 }
 
-std::string what_stays(std::span<const Output> unwritten) {
+std::string what_stays(std::span<const TableOutput> unwritten) {
   std::string names;
-  for (const Output& output : unwritten) {
+  for (const TableOutput& output : unwritten) {
     names += (names.empty() ? "" : ", ") + output.order.name;
   }
   return names + (unwritten.size() == 1 ? " is as it was" : " are as they were");
@@ -222,11 +109,12 @@ void tabulate(const TabulateOptions& options) {
   const Material material = read_material(options.material);
   const int threads = threads_of(options.threads);
   const std::optional<Target> target = target_of(options);
-  std::vector<Output> outputs;
+  std::vector<TableOutput> outputs;
   for (const std::string& name : options.outputs) {
     for (const FileToWrite& file : files_to_write(name, options.files)) {
-      if (std::any_of(outputs.begin(), outputs.end(),
-                      [&](const Output& other) { return same_file(other.path(), file.name); })) {
+      if (std::any_of(outputs.begin(), outputs.end(), [&](const TableOutput& other) {
+            return same_file(other.path(), file.name);
+          })) {
         throw InputError("--output: " + file.name + " is given twice");
       }
       outputs.push_back(plan_output(options, material, file));
@@ -238,23 +126,23 @@ void tabulate(const TabulateOptions& options) {
   // All opened before any work, so that a wrong folder costs nothing and a dry run finds it.
   std::vector<AtomicFile> files;
   files.reserve(outputs.size());
-  for (const Output& output : outputs) files.emplace_back(output.path());
+  for (const TableOutput& output : outputs) files.emplace_back(output.path());
   std::size_t next = 0;
   try {
     for (; next < outputs.size(); ++next) {
-      Output& output = outputs[next];
+      TableOutput& output = outputs[next];
       if (target) choose(output, *target, options.dry_run, workers);
       if (options.dry_run) {
         const Prediction expected = predict_file(output.order, output.setting, workers);
         bar.clear();
-        report(options, output, expected);
+        report_expected(output, expected, options.json);
       } else {
         const auto start = std::chrono::steady_clock::now();
         write_setting(output.order, output.setting, files[next], workers, output.error);
         files[next].commit();
         const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
         bar.clear();
-        report(options, output, files[next].size(), elapsed.count());
+        report_written(output, files[next].size(), elapsed.count(), options.json);
       }
       // To a pipe all at once: where nobody reads it, that ends the program.
       if (::isatty(STDOUT_FILENO) != 0) std::cout.flush();

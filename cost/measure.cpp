@@ -20,8 +20,6 @@
 namespace clothbrdf {
 namespace {
 
-constexpr std::size_t kPairs = 100000;
-constexpr std::uint64_t kSeed = 4;
 constexpr int kRepeats = 3;
 
 // Work is counted for all settings together, not for each file.
@@ -102,7 +100,7 @@ void measure_file(const FileOrder& any, const PlannedFile& file, const Exact& ex
   std::optional<Exact> in_its_colours;
   if (measured.table.spec().channels.size() != spec.channels.size()) {
     const PairModel model(order, any.isotropic, workers);
-    in_its_colours = exact_values(model.get(), kPairs, kSeed, workers);
+    in_its_colours = exact_values(model.get(), kCostPairs, kCostSeed, workers);
   }
   for (const Reader reader : file.readers) {
     CostSetting s = measured.costs;
@@ -132,15 +130,15 @@ CostReport measure_cost(const Material& material, const std::filesystem::path& s
   report.material = material;
   report.threads = workers.threads;
   report.repeats = kRepeats;
-  report.seed = kSeed;
+  report.seed = kCostSeed;
   FileOrder order{material, {}, false, find_format("cost.exr"), {}, false, {}};
   order.name = (scratch_folder / "clothbrdf_cost").string();
   const Workers quiet = uncounted(workers);
 
   const PairModel cloth(order, false, quiet);
   const PairModel mean(order, true, quiet);
-  const Exact of_cloth = exact_values(cloth.get(), kPairs, kSeed, quiet);
-  const Exact of_mean = exact_values(mean.get(), kPairs, kSeed, quiet);
+  const Exact of_cloth = exact_values(cloth.get(), kCostPairs, kCostSeed, quiet);
+  const Exact of_mean = exact_values(mean.get(), kCostPairs, kCostSeed, quiet);
   report.pairs = of_cloth.sampled.pairs.size();
   const double loss = error_of(mean.get(), of_cloth, quiet).rms;
   const auto nodes = [&](const PairModel& model, const Exact& exact) {

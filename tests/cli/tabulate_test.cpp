@@ -122,7 +122,122 @@ TEST_CASE("tabulate --dry-run writes nothing") {
       json_lines(output_of({"tabulate", kSilk, "--dry-run", "--json", "-o", exr}));
   REQUIRE(told.size() == 1);
   CHECK(!told[0].contains("bytes"));
+  CHECK(told[0]["predicted"]["bytes"] > 39e6);
   CHECK(folder.entry_count() == 0);
+}
+
+TEST_CASE("tabulate --dry-run says what it then takes, within a factor of two") {
+  const TemporaryFolder folder;
+  const auto off = [](double a, double b) { return std::max(a / b, b / a); };
+  for (const Arguments& options :
+       std::vector<Arguments>{{"-o", "a.binary"},
+                              {"-o", "b.exr"},
+                              {"-o", "c.exr", "--half", "--compress"},
+                              {"-o", "d.exr", "--grid", "halfdiff4d:60x48x60x60"},
+                              {"-o", "e.bsdf"},
+                              {"-o", "f.exr", "--tolerance", "0.003"}}) {
+    Arguments arguments = {"tabulate", kSilk, "--json"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    arguments[4] = (folder / arguments[4]).string();
+    // Other work on the machine may slow down either: the best of three tries.
+    double seconds = INFINITY;
+    double bytes = 0;
+    for (int tried = 0; tried < 3 && seconds > 2; ++tried) {
+      Arguments dry = arguments;
+      dry.emplace_back("--dry-run");
+      const json expected = json_lines(output_of(dry)).at(0)["predicted"];
+      std::filesystem::remove(arguments[4]);
+      const json measured = json_lines(output_of(arguments)).at(0);
+      seconds = std::min(seconds, off(expected["seconds"], measured["seconds"]));
+      bytes = off(expected["bytes"], measured["bytes"]);
+      // What is expected is the error of the very same file, over other pairs.
+      if (measured.contains("error")) {
+        CHECK(off(expected["error"]["rms"], measured["error"]["rms"]) < 1.2);
+      }
+    }
+    CAPTURE(arguments, seconds, bytes);
+    CHECK(seconds < 2);
+    CHECK(bytes < 1.05);
+  }
+}
+
+TEST_CASE("tabulate --tolerance meets it, and says so in the file") {
+  const TemporaryFolder folder;
+  const std::string exr = (folder / "silk.exr").string();
+  const json told =
+      json_lines(output_of({"tabulate", kSilk, "--tolerance", "0.02", "--json", "-o", exr})).at(0);
+  CHECK(told["error"]["rms"] <= 0.02);
+  CHECK(told["error"]["rms"] > 0.015);
+  CHECK(told["error"]["reader"] == "linear");
+  CHECK(told["error"]["against"] == "cloth");
+  const Table table = table_of(exr);
+  REQUIRE(table.spec().provenance.error);
+  CHECK(table.spec().provenance.error->error.rms == told["error"]["rms"].get<double>());
+  CHECK(table.precision().relative == 0x1p-11);
+  // Nothing else is left in the folder, and what a conversion writes has another error.
+  CHECK(folder.entry_count() == 1);
+  const std::string other = (folder / "other.exr").string();
+  output_of({"convert", exr, other, "--grid", "halfdiff4d:9x8x9x8"});
+  CHECK(!table_of(other).spec().provenance.error);
+
+  const json p99 = json_lines(output_of({"tabulate", kSilk, "--tolerance", "0.05", "--metric",
+                                         "p99", "--json", "-o", exr}))
+                       .at(0);
+  CHECK(p99["error"]["p99"] <= 0.05);
+  CHECK(p99["error"]["p99"] > 0.035);
+}
+
+TEST_CASE("a tolerance that a format cannot meet is refused with the best that it can") {
+  const TemporaryFolder folder;
+  const std::string binary = (folder / "silk.binary").string();
+  const Outcome outcome = run_program({"tabulate", kSilk, "--tolerance", "0.03", "-o", binary});
+  CHECK(outcome.exit_code == 1);
+  CHECK(outcome.out == "");
+  CHECK_THAT(outcome.err, ContainsSubstring(binary) && ContainsSubstring("0.03") &&
+                              ContainsSubstring("the least rms error") &&
+                              ContainsSubstring("--isotropic-ok"));
+  CHECK(folder.entry_count() == 0);
+  const json told = json_lines(output_of({"tabulate", kSilk, "--tolerance", "0.03",
+                                          "--isotropic-ok", "--json", "-o", binary}))
+                        .at(0);
+  CHECK(told["error"]["rms"] <= 0.03);
+  CHECK(told["error"]["reader"] == "nearest");
+  CHECK(told["error"]["against"] == "mean over rotations");
+}
+
+TEST_CASE("formats with a size get the bytes that a tolerance needs") {
+  const TemporaryFolder folder;
+  const std::string bsdf = (folder / "silk.bsdf").string();
+  const json rough =
+      json_lines(output_of({"tabulate", kSilk, "--tolerance", "0.1", "--json", "-o", bsdf})).at(0);
+  const json fine =
+      json_lines(output_of({"tabulate", kSilk, "--tolerance", "0.03", "--json", "-o", bsdf})).at(0);
+  CHECK(rough["error"]["rms"] <= 0.1);
+  CHECK(fine["error"]["rms"] <= 0.03);
+  CHECK(rough["bytes"].get<double>() < 0.5 * fine["bytes"].get<double>());
+  CHECK(table_of(bsdf).spec().provenance.error);
+}
+
+TEST_CASE("options that --tolerance decides itself, or that need it, are refused") {
+  for (const Arguments& wrong :
+       std::vector<Arguments>{{"--tolerance", "0.01", "--grid", "halfdiff4d"},
+                              {"--tolerance", "0.01", "--cells", "point"},
+                              {"--tolerance", "0.01", "--size", "1000000"},
+                              {"--tolerance", "0"},
+                              {"--tolerance", "nan"},
+                              {"--tolerance", "-1"},
+                              {"--tolerance", "0.01", "--metric", "max"},
+                              {"--metric", "rms"},
+                              {"--isotropic-ok"}}) {
+    const TemporaryFolder folder;
+    Arguments arguments = {"tabulate", kSilk, "-o", (folder / "silk.exr").string()};
+    arguments.insert(arguments.end(), wrong.begin(), wrong.end());
+    const Outcome outcome = run_program(arguments);
+    CAPTURE(wrong, outcome.err);
+    CHECK(outcome.exit_code == 2);
+    CHECK(std::count(outcome.err.begin(), outcome.err.end(), '\n') == 1);
+    CHECK(folder.entry_count() == 0);
+  }
 }
 
 TEST_CASE("the material may follow -o") {
