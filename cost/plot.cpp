@@ -13,9 +13,11 @@
 namespace clothbrdf {
 namespace {
 
-// Okabe and Ito's palette, without yellow and black: told apart with any colour vision.
-constexpr std::array<const char*, 6> kColours = {"#0072B2", "#D55E00", "#009E73",
-                                                 "#CC79A7", "#E69F00", "#56B4E9"};
+// Paul Tol's muted scheme: told apart with any colour vision. Together with the shapes, whose
+// number has no divisor in common, 90 dials differ.
+constexpr std::array<const char*, 9> kColours = {"#332288", "#CC6677", "#117733",
+                                                 "#88CCEE", "#882255", "#44AA99",
+                                                 "#999933", "#AA4499", "#DDCC77"};
 // gnuplot's filled and open circle, square, triangles, diamond.
 constexpr std::array<int, 10> kShapes = {7, 5, 9, 13, 11, 6, 4, 8, 12, 10};
 constexpr const char* kDominatedColour = "#B0B0B0";
@@ -102,11 +104,29 @@ class Panel {
   std::string plot_;
 };
 
-// Round the settings by a factor, and over at least a decade's third, so that there are labels.
+// Some room round the settings. gnuplot itself labels powers of 10 alone, of which a short axis may
+// have none.
 std::string axis_range(const char* axis, double lowest, double highest) {
   constexpr double kMargin = 1.6;
+  constexpr double kShort = 30;
+  lowest /= kMargin;
+  highest *= kMargin;
   std::ostringstream text;
-  text << "set " << axis << "range [" << lowest / kMargin << ':' << highest * kMargin << "]\n";
+  text << "set " << axis << "range [" << lowest << ':' << highest << "]\nset " << axis << "tics ";
+  if (highest / lowest > kShort) {
+    text << "autofreq\n";
+    return text.str();
+  }
+  const char* comma = "(";
+  for (double decade = std::pow(10, std::floor(std::log10(lowest))); decade < highest;
+       decade *= 10) {
+    for (const double label : {decade, 2 * decade, 5 * decade}) {
+      if (label < lowest || label > highest) continue;
+      text << comma << label;
+      comma = ", ";
+    }
+  }
+  text << ")\n";
   return text.str();
 }
 
@@ -126,8 +146,14 @@ void draw_front(const Front& front, const Settings& settings,
   std::string prefix = front.name;
   std::erase_if(prefix, [](char c) { return c == '-'; });
   Panel panel("front_" + prefix);
-  const auto on_front = [](const CostSetting* setting) { return setting->pareto; };
-  panel.add(chosen(settings, on_front), "with lines lw 1.5 lc rgb '#606060' title 'front'");
+  const std::string line = "with lines lw 1.5 lc rgb '#606060' ";
+  // Rotations approximate another thing, the mean over them, and so have a front of their own.
+  for (const bool rotations : {false, true}) {
+    const auto on_front = [&](const CostSetting* setting) {
+      return setting->pareto && (setting->dial == "rotations") == rotations;
+    };
+    panel.add(chosen(settings, on_front), line + (rotations ? "notitle" : "title 'front'"));
+  }
   for (const std::string& dial : dials_of(settings)) {
     const auto number = static_cast<std::size_t>(
         std::find(all_dials.begin(), all_dials.end(), dial) - all_dials.begin());
@@ -164,14 +190,18 @@ std::string cost_plot(const CostReport& report, const std::string& terminal) {
 
   std::ostringstream script;
   script.precision(9);
-  script << "set terminal " << terminal << " size " << kPlotWidth << ',' << kPlotHeight
-         << " noenhanced background '#FFFFFF' font 'sans,11'\n"
-         << "set multiplot layout 1," << panels.size() << " title "
-         << quoted(report.material.name + ": error over time (grey: dominated)") << " noenhanced\n"
-         << "set logscale xy\nset format xy '%.1e'\nset grid lc rgb '#DDDDDD'\n"
-         << "set xlabel 'seconds'\nset ylabel 'rms error'\n"
-         << "set key below vertical maxrows 5 samplen 1 noenhanced\n"
-         << "set xtics rotate by -30\n";
+  script
+      << "set terminal " << terminal << " size " << kPlotWidth << ',' << kPlotHeight
+      << " noenhanced background '#FFFFFF' font 'sans,11'\n"
+      << "set multiplot layout 1," << panels.size() << " title "
+      << quoted(report.material.name + ": error over time (grey: dominated)") << " noenhanced\n"
+      << "set logscale xy\nset format xy '%g'\n"
+      << "set grid xtics ytics lt 1 lc rgb '#DDDDDD'\n"
+      << "set xlabel 'seconds'\nset ylabel 'rms error'\n"
+      << "set lmargin 10\nset rmargin 2\n"
+      << "set tmargin at screen 0.87\nset bmargin at screen 0.29\n"
+      << "set key at graph 0.5, graph -0.18 center top vertical maxrows 5 Left reverse samplen 1 "
+         "width -1 font ',10' noenhanced\n";
   for (const auto& [front, settings] : panels) draw_front(front, settings, dials, script);
   script << "unset multiplot\n";
   return script.str();
