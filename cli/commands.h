@@ -24,5 +24,6 @@ void add_compare_command(CLI::App& program);
 void add_convert_command(CLI::App& program);
 void add_fit_command(CLI::App& program);
 void add_identify_command(CLI::App& program);
+void add_cost_command(CLI::App& program);
 
 }  // namespace clothbrdf

@@ -38,7 +38,7 @@ TEST_CASE("the program tells its version and its help, with an example for each 
   CHECK(version.out.starts_with("clothbrdf 0."));
   const Outcome help = run_program({"--help"});
   CHECK(help.exit_code == 0);
-  for (const std::string command : {"new", "eval", "tabulate", "info", "fit", "identify"}) {
+  for (const std::string command : {"new", "eval", "tabulate", "info", "fit", "identify", "cost"}) {
     CHECK_THAT(help.out, ContainsSubstring("\n  " + command + " "));
     const Outcome more = run_program({command, "--help"});
     CAPTURE(command, more.out);
@@ -54,11 +54,11 @@ TEST_CASE("a command line that cannot be understood is told by the word that is 
   check_refused({
       {{},
        {"a command is required: new, eval, tabulate, info, preview, check, compare, convert, fit, "
-        "identify",
+        "identify, cost",
         "clothbrdf --help"}},
       {{"frobnicate"},
        {"'frobnicate' is not a command",
-        "new, eval, tabulate, info, preview, check, compare, convert, fit, identify"}},
+        "new, eval, tabulate, info, preview, check, compare, convert, fit, identify, cost"}},
       {{"frobnicate", kSilk, "-o", "x.exr"}, {"'frobnicate' is not a command"}},
       {{"--frob"}, {"'--frob' is not an option"}},
       {{"eval"}, {"MATERIAL is required", "clothbrdf eval --help"}},
