@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstddef>
 #include <vector>
 
 namespace clothbrdf {
 
 Timing timing_of(int repeats, const std::function<double()>& seconds) {
-  std::vector<double> all;
-  for (int k = 0; k < repeats; ++k) all.push_back(seconds());
+  std::vector<double> all(static_cast<std::size_t>(repeats));
+  std::generate(all.begin(), all.end(), seconds);
   std::sort(all.begin(), all.end());
   const std::size_t middle = all.size() / 2;
   const double median = all.size() % 2 == 1 ? all[middle] : (all[middle - 1] + all[middle]) / 2;

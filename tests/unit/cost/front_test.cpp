@@ -123,7 +123,7 @@ TEST_CASE("chosen nodes are compared with uniform axes at an error that both rea
   CHECK_FALSE(chosen_nodes_ratio(settings));
   add_tables(settings, "uniform axes", 2, {40, 10, 20});
   CHECK_FALSE(chosen_nodes_ratio(settings));
-  add_tables(settings, "uniform axes", 7, {10, 20, 40}, "float");
+  add_tables(settings, "uniform axes", 0.5, {10, 20, 40}, "float");
   add_tables(settings, "chosen nodes", 1, {10, 15, 30});
   const auto ratio = chosen_nodes_ratio(settings);
   REQUIRE(ratio);
