@@ -42,8 +42,8 @@ std::string content(const File& file) {
 // gnuplot repeats the script's line, with a caret below, before it says what is wrong with it.
 std::string complaint(const std::string& errors) {
   const std::size_t place = errors.find(" line ");
-  const std::size_t begin = place == std::string::npos ? errors.find_first_not_of(" \t\n")
-                                                       : errors.rfind('\n', place) + 1;
+  const std::size_t line = place == std::string::npos ? 0 : errors.rfind('\n', place) + 1;
+  const std::size_t begin = errors.find_first_not_of(" \t\n", line);
   if (begin == std::string::npos) return "no reason given";
   return errors.substr(begin, errors.find('\n', begin) - begin);
 }

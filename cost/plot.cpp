@@ -108,7 +108,7 @@ class Panel {
 // have none.
 std::string axis_range(const char* axis, double lowest, double highest) {
   constexpr double kMargin = 1.6;
-  constexpr double kShort = 30;
+  constexpr double kShort = 100;
   lowest /= kMargin;
   highest *= kMargin;
   std::ostringstream text;
