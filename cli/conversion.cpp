@@ -120,7 +120,6 @@ Conversion plan_conversion(const Table& source, const ConversionWish& wish) {
       Conversion conversion{&format, source.spec(), {}, {}};
       TableSpec& spec = conversion.spec;
       spec.samples = samples;
-      spec.provenance.error.reset();  // it was that of the source's file
       if (!components) {
         std::erase_if(spec.channels, [](const Channel& c) { return c.part != Part::kTotal; });
         spec = in_colours_of(format, spec, wish.write);
@@ -144,11 +143,36 @@ Conversion plan_conversion(const Table& source, const ConversionWish& wish) {
   throw std::logic_error("the last choice returns or throws");
 }
 
+namespace {
+
+// The same values under another description.
+class Restated final : public Producer {
+ public:
+  Restated(const Producer& source, TableSpec spec) : source_(source), spec_(std::move(spec)) {}
+  const TableSpec& spec() const override { return spec_; }
+  void fill_rows(std::size_t first_row, std::span<double> values) const override {
+    source_.fill_rows(first_row, values);
+  }
+  void fill_pairs(std::span<const Directions> pairs, std::span<double> values) const override {
+    source_.fill_pairs(pairs, values);
+  }
+
+ private:
+  const Producer& source_;
+  TableSpec spec_;
+};
+
+}  // namespace
+
 std::optional<ChannelDifference> run_conversion(const Table& source, const ConversionWish& wish,
                                                 Conversion& conversion, AtomicFile& file) {
   const Workers& workers = wish.write.workers;
   const TableSpec& target = conversion.spec;
-  const auto write = [&](const Producer& uncoloured) {
+  const auto write = [&](const Producer& values) {
+    TableSpec spec = values.spec();
+    spec.provenance.error.reset();
+    const Restated restated(values, std::move(spec));
+    const Producer& uncoloured = restated;
     const std::unique_ptr<Producer> coloured =
         in_colours_of(*conversion.format, uncoloured, wish.write);
     const Producer& producer = coloured ? *coloured : uncoloured;

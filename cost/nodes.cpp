@@ -10,7 +10,9 @@ constexpr std::size_t kBins = 90;
 // Steps are at most so many times as wide as the narrowest: directions that the error's definition
 // leaves out, or hardly weighs, are looked at as well.
 constexpr double kWidest = 8;
-// Nodes at 90 degrees would lie on the horizon, whatever the other angles.
+// Nodes at 90 degrees would lie on the horizon, whatever the other angles. The one before the last
+// stands where errors are no longer counted: f grows so fast beyond that a node there would spoil
+// what is read before it.
 constexpr double kLastTheta = 89;
 
 // The axes that a weave's symmetries leave.
@@ -72,7 +74,7 @@ ChosenNodes::ChosenNodes(const Producer& model, const SampledPairs& sampled,
   std::vector<double> values(2 * exact.size());
   for (std::size_t a = 0; a < angles.axes.size(); ++a) {
     ChosenAxis chosen{angles.axes[a], angles.axes[a].highest_deg, {}, 0};
-    if (!chosen.axis.mirrored) chosen.last_deg = kLastTheta;
+    if (!chosen.axis.mirrored) chosen.last_deg = kSampledTheta;
     const double step = chosen.axis.name == "theta_h" ? 0.5 : 1;
     std::vector<double> at(sampled.pairs.size());
     for (std::size_t p = 0; p < sampled.pairs.size(); ++p) {
@@ -126,8 +128,10 @@ Grid ChosenNodes::grid(std::span<const int> sizes) const {
     Axis axis = chosen.axis;
     axis.size = sizes[a];
     const double range = chosen.last_deg - axis.lowest_deg;
-    for (int k = 0; k < axis.size; ++k) {
-      const double share = static_cast<double>(k) / (axis.size - 1);
+    const bool with_last_theta = !axis.mirrored && axis.size > 2;
+    const int inner = axis.size - (with_last_theta ? 1 : 0);
+    for (int k = 0; k < inner; ++k) {
+      const double share = static_cast<double>(k) / (inner - 1);
       const auto above =
           std::upper_bound(chosen.cumulative.begin() + 1, chosen.cumulative.end() - 1, share);
       const double low = *(above - 1);
@@ -136,6 +140,7 @@ Grid ChosenNodes::grid(std::span<const int> sizes) const {
       axis.listed_deg.push_back(axis.lowest_deg + range * (bin / kBins));
     }
     axis.listed_deg.back() = chosen.last_deg;
+    if (with_last_theta) axis.listed_deg.push_back(kLastTheta);
     grid.axes.push_back(std::move(axis));
   }
   return grid;
@@ -146,7 +151,8 @@ std::vector<int> ChosenNodes::sizes(double error) const {
   const double of_axis = error / std::sqrt(static_cast<double>(axes_.size()));
   for (const ChosenAxis& chosen : axes_) {
     const double steps = std::sqrt(chosen.error / of_axis);
-    sizes.push_back(1 + std::max(1, static_cast<int>(std::lround(std::min(steps, 1e5)))));
+    const int nodes = chosen.axis.mirrored ? 1 : 2;  // at the end of the last step, and beyond
+    sizes.push_back(nodes + std::max(1, static_cast<int>(std::lround(std::min(steps, 1e5)))));
   }
   return sizes;
 }

@@ -37,7 +37,7 @@ class ChosenNodes {
  private:
   struct ChosenAxis {
     Axis axis;                       // without nodes
-    double last_deg = 0;             // where the last node lies
+    double last_deg = 0;             // where the bins end
     std::vector<double> cumulative;  // share of the nodes up to each edge of even bins
     double error = 0;                // rms with one step, falls as steps^-2
   };

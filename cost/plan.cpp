@@ -49,7 +49,7 @@ std::vector<PlannedFile> isotropic_files(const ChosenNodes& nodes, Reflectance r
     files.push_back({kUniform, ".exr", uniform(grid(n, n, 2 * n)), {}});
     files.back().even_axes = true;
   }
-  add_chosen(nodes, files, {0.3, 0.1, 0.03, 0.01, 0.003, 0.001, 0.00022});
+  add_chosen(nodes, files, {1, 0.3, 0.1, 0.03, 0.01, 0.003, 0.001, 0.0002, 0.0001});
   files.push_back({"half floats", ".exr", grid(90, 90, 180), {}, true});
   files.push_back({"doubles", ".binary", halfdiff3d(), {}, false, 0, both()});
   if (!paper) {
@@ -88,7 +88,7 @@ std::vector<PlannedFile> anisotropic_files(const ChosenNodes& nodes, Reflectance
     sizes[axis] *= 2;
     files.push_back({names[axis], ".exr", grid(sizes), {}});
   }
-  add_chosen(nodes, files, {0.3, 0.1, 0.03, 0.01, 0.003, 0.0009});
+  add_chosen(nodes, files, {1, 0.3, 0.1, 0.03, 0.01, 0.003, 0.0009});
   files.push_back({"half floats", ".exr", grid({45, 36, 45, 45}), {}, true});
   files.push_back({"in/out nodes", ".exr", inout(), {}, false, 0, both()});
   files.push_back({"in/out nodes", ".exr", inout(12, 72, 12, 72), {}, false, 0, both()});

@@ -53,6 +53,7 @@ Table tabulated(const Table& source, const Samples& samples, const Workers& work
   TableSpec spec = source.spec();
   spec.samples = samples;
   spec.cells = {};  // whatever the source's cells were: values are taken at nodes
+  spec.provenance.error.reset();
   const std::size_t columns = spec.column_count();
   // A computed table has no cells that were not measured.
   const double mark = spec.provenance.material ? 0 : kNotMeasured;
@@ -148,7 +149,6 @@ Table resample(const Table& source, const Samples& samples, const Workers& worke
   if (source.spec().samples == samples) return source;
   TableSpec target = source.spec();
   target.samples = samples;
-  target.provenance.error.reset();
   const bool isotropic = averages_rotations(source.spec(), target);
   std::optional<Table> mean;
   // Cheaper than a mean for each node of the target.

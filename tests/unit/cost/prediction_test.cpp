@@ -42,8 +42,8 @@ TEST_CASE("what is predicted of point cells is what is read from the table") {
 
 TEST_CASE("the nearest cell's reader takes the stored value, 0 outside the grid") {
   const Table table = preset_table("silk", inout(3, 4, 3, 4));
-  const std::vector<Directions> pairs = {{direction(31, 92), direction(29, 268)},
-                                         {direction(80, 0), direction(10, 0)}};
+  const std::vector<Directions> pairs = {{direction(31.0, 92.0), direction(29.0, 268.0)},
+                                         {direction(80.0, 0.0), direction(10.0, 0.0)}};
   const std::vector<double> read = read_pairs(table, Reader::kNearest, pairs, 1);
   const auto cell = table.spec().grid().cell_of(pairs[0].wi, pairs[0].wo);
   REQUIRE(cell);
