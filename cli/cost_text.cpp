@@ -20,7 +20,7 @@ std::string percent(double share) {
 
 // "1.52" or "1.52 (1.4-1.7)".
 std::string time_text(const Timing& timing) {
-  const std::string median = short_number(timing.median, kDigits);
+  std::string median = short_number(timing.median, kDigits);
   if (timing.lowest == timing.highest) return median;
   return median + " (" + short_number(timing.lowest, 2) + "-" + short_number(timing.highest, 2) +
          ")";

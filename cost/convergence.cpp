@@ -45,7 +45,8 @@ Convergence named(const CostSetting& setting, const char* law) {
 constexpr double kHalfRounding = 2e-4;
 
 std::string table_reason(const CostSetting& finest, double expected, double fitted) {
-  if (fitted > expected) return "steeper: the coarsest grids miss the lobes";
+  if (fitted > expected)
+    return "steeper: the coarsest grids miss the lobes, or an axis needs no more nodes";
   if (finest.stored == "half" && finest.error.rms < 5 * kHalfRounding)
     return "flatter: values stored as half round by about 0.02 %, below which no grid gets";
   return "flatter: the V-cavity's kink and cells cut by the horizon are of lower order";

@@ -10,10 +10,13 @@ constexpr std::size_t kBins = 90;
 // Steps are at most so many times as wide as the narrowest: directions that the error's definition
 // leaves out, or hardly weighs, are looked at as well.
 constexpr double kWidest = 8;
-// Nodes at 90 degrees would lie on the horizon, whatever the other angles. The one before the last
-// stands where errors are no longer counted: f grows so fast beyond that a node there would spoil
-// what is read before it.
-constexpr double kLastTheta = 89;
+// Nodes beyond the angles at which errors are counted, on top of those that errors ask for. f grows
+// as 1/cos^2 theta_d there: a single node would overstate what lies before it, and one at 90
+// degrees would lie on the horizon.
+std::vector<double> outer_nodes(const Axis& axis) {
+  if (axis.mirrored) return {};
+  return axis.name == "theta_d" ? std::vector<double>{86, 87, 88} : std::vector<double>{88};
+}
 
 // The axes that a weave's symmetries leave.
 std::vector<Axis> symmetric_axes(const TableSpec& spec) {
@@ -128,8 +131,10 @@ Grid ChosenNodes::grid(std::span<const int> sizes) const {
     Axis axis = chosen.axis;
     axis.size = sizes[a];
     const double range = chosen.last_deg - axis.lowest_deg;
-    const bool with_last_theta = !axis.mirrored && axis.size > 2;
-    const int inner = axis.size - (with_last_theta ? 1 : 0);
+    std::vector<double> outer = outer_nodes(axis);
+    // Never without nodes at both ends of what errors are counted for.
+    outer.resize(std::min(outer.size(), static_cast<std::size_t>(std::max(0, axis.size - 2))));
+    const int inner = axis.size - static_cast<int>(outer.size());
     for (int k = 0; k < inner; ++k) {
       const double share = static_cast<double>(k) / (inner - 1);
       const auto above =
@@ -140,7 +145,7 @@ Grid ChosenNodes::grid(std::span<const int> sizes) const {
       axis.listed_deg.push_back(axis.lowest_deg + range * (bin / kBins));
     }
     axis.listed_deg.back() = chosen.last_deg;
-    if (with_last_theta) axis.listed_deg.push_back(kLastTheta);
+    axis.listed_deg.insert(axis.listed_deg.end(), outer.begin(), outer.end());
     grid.axes.push_back(std::move(axis));
   }
   return grid;
@@ -151,8 +156,8 @@ std::vector<int> ChosenNodes::sizes(double error) const {
   const double of_axis = error / std::sqrt(static_cast<double>(axes_.size()));
   for (const ChosenAxis& chosen : axes_) {
     const double steps = std::sqrt(chosen.error / of_axis);
-    const int nodes = chosen.axis.mirrored ? 1 : 2;  // at the end of the last step, and beyond
-    sizes.push_back(nodes + std::max(1, static_cast<int>(std::lround(std::min(steps, 1e5)))));
+    const int inner = 1 + std::max(1, static_cast<int>(std::lround(std::min(steps, 1e5))));
+    sizes.push_back(inner + static_cast<int>(outer_nodes(chosen.axis).size()));
   }
   return sizes;
 }

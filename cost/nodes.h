@@ -18,6 +18,7 @@ enum class Metric { kRms, kP99 };
 /// angle, the sum of squares for n nodes is least where their density is m^(1/5): then every step
 /// adds the same. phi_h and phi_d cover only what the symmetries of a weave leave, and are mirrored
 /// at their ends: f is even in phi_d and in phi_h - rotation (and reciprocal, where microfacet).
+/// theta_h has one node more beyond 85 degrees, theta_d three: no error is counted there.
 class ChosenNodes {
  public:
   /// `model` answers pairs; exact is its values at the sampled ones, [pair][channel]. An isotropic

@@ -37,6 +37,7 @@ FileSetting fewer_rows(FileSetting setting, std::size_t rows) {
   if (size >= first.size) return setting;
   if (first.spacing == Spacing::kListed) {
     std::vector<double> nodes;
+    nodes.reserve(static_cast<std::size_t>(size));
     for (int k = 0; k < size; ++k)
       nodes.push_back(first.node_deg(k * (first.size - 1) / (size - 1)));
     first.listed_deg = std::move(nodes);

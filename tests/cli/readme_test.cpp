@@ -88,7 +88,7 @@ TEST_CASE("the README's session runs as printed") {
     CHECK(masked(read_file(printed)) == masked(expected));
     ++commands;
   }
-  CHECK(commands == 13);
+  CHECK(commands == 14);
 }
 
 TEST_CASE("the README's material is the preset silk") {

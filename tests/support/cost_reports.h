@@ -24,7 +24,8 @@ inline CostReport full_cost_report() {
         setting.dial = good ? "chosen nodes" : "uniform axes";
         if (!file) setting.dial = good ? "layers kept" : "rotations";
         const std::string size = std::to_string(12 << step);
-        setting.name = front + " " + setting.dial + " " + size;
+        setting.name = front;
+        setting.name.append(" ").append(setting.dial).append(" ").append(size);
         const double seconds = 0.013 * (1 << (2 * step)) * (good ? 1 : 1.3);
         setting.seconds = {seconds, 0.9 * seconds, 1.2 * seconds};
         setting.error.rms = (good ? 0.2 : 0.31) / (1 << (2 * step));
