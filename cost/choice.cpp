@@ -93,8 +93,7 @@ FileSetting SettingChooser::choose(double tolerance) const {
   const Grid* const grid = std::get_if<Grid>(&standard_);
   if (grid == nullptr && has_option(*order_.format, "--size")) {
     choose_bytes(tolerance, tried);
-  } else if (grid != nullptr && grid->kind != GridKind::kInOut &&
-             is_allowed(order_, with_samples(standard, scaled(*grid, 0.5)))) {
+  } else if (grid != nullptr && is_allowed(order_, with_samples(standard, scaled(*grid, 0.5)))) {
     if (order_.format->keeps_listed_nodes) {
       choose_nodes(tolerance, tried);
     } else {
@@ -132,65 +131,73 @@ void SettingChooser::choose_nodes(double tolerance, std::vector<FileSetting>& tr
     halves = tolerance >= kHalfIsFine ? std::vector<bool>{true} : std::vector<bool>{true, false};
   }
   for (const bool half : halves) {
-    FileSetting setting{Samples{}, {}, order_.options, {}};
-    setting.options.half = half;
-    std::vector<int> sizes;
-    double aim = tolerance;
-    int in_vain = 0;
-    // Errors fall as the square of the steps: what was missed is made up for.
-    for (int trial = 0; trial < kMostTrials; ++trial) {
-      sizes = nodes.sizes(aim);
-      setting.samples = nodes.grid(sizes);
-      if (bytes(setting) > kLargestFile) break;
-      predict(setting);
-      tried.push_back(setting);
-      const double error = limited(setting.error);
-      if (error <= tolerance && error > 0.95 * tolerance) break;
-      // Where rounding is what is left, more nodes do not help.
-      if (error > tolerance && ++in_vain > 3 &&
-          error > 0.9 * limited(tried[tried.size() - 4].error)) {
-        break;
-      }
-      aim *= std::clamp((error > tolerance ? 0.95 : 0.98) * tolerance / error, 0.2, 5.0);
-    }
+    std::vector<FileSetting> of_type = nodes_for(nodes, tolerance, half);
     // The best that was found, with fewer nodes wherever they are not missed.
     const FileSetting* best = nullptr;
-    for (const FileSetting& s : tried) {
-      if (s.options.half != half || !meets(s, tolerance)) continue;
-      if (best == nullptr || bytes(s) < bytes(*best)) best = &s;
+    for (const FileSetting& s : of_type) {
+      if (meets(s, tolerance) && (best == nullptr || bytes(s) < bytes(*best))) best = &s;
     }
-    if (best == nullptr) continue;
-    setting = *best;
-    for (std::size_t a = 0; a < sizes.size(); ++a) {
-      sizes[a] = std::get<Grid>(setting.samples).axes[a].size;
+    if (best != nullptr) tried.push_back(with_fewer_nodes(nodes, *best, tolerance));
+    tried.insert(tried.end(), of_type.begin(), of_type.end());
+  }
+}
+
+std::vector<FileSetting> SettingChooser::nodes_for(const ChosenNodes& nodes, double tolerance,
+                                                   bool half) const {
+  std::vector<FileSetting> tried;
+  FileSetting setting{Samples{}, {}, order_.options, {}};
+  setting.options.half = half;
+  double aim = tolerance;
+  int in_vain = 0;
+  // Errors fall as the square of the steps: what was missed is made up for.
+  for (int trial = 0; trial < kMostTrials; ++trial) {
+    setting.samples = nodes.grid(nodes.sizes(aim));
+    if (bytes(setting) > kLargestFile) break;
+    predict(setting);
+    tried.push_back(setting);
+    const double error = limited(setting.error);
+    if (error <= tolerance && error > 0.95 * tolerance) break;
+    // Where rounding is what is left, more nodes do not help.
+    if (error > tolerance && ++in_vain > 3 &&
+        error > 0.9 * limited(tried[tried.size() - 4].error)) {
+      break;
     }
-    const auto shrink = [&](std::size_t axis, std::size_t grown, double share) {
-      std::vector<int> others = sizes;
-      others[axis] -= std::max(1, static_cast<int>(std::lround(share * sizes[axis])));
-      if (grown < others.size()) ++others[grown];
-      if (others[axis] < 2) return false;
-      FileSetting smaller = with_samples(setting, nodes.grid(others));
-      if (bytes(smaller) >= bytes(setting)) return false;
-      predict(smaller);
-      if (!meets(smaller, tolerance)) return false;
-      setting = std::move(smaller);
-      sizes = std::move(others);
-      return true;
-    };
-    const std::size_t axes = sizes.size();
-    constexpr double kFinest = 0.03;
-    for (const double share : {0.1, kFinest}) {
-      for (bool smaller = true; smaller;) {
-        smaller = false;
-        for (std::size_t a = 0; a < axes; ++a) smaller = shrink(a, axes, share) || smaller;
-        // At times it pays to have one more on another axis.
-        for (std::size_t k = 0; share == kFinest && k < axes * axes && !smaller; ++k) {
-          smaller = k / axes != k % axes && shrink(k / axes, k % axes, share);
-        }
+    aim *= std::clamp((error > tolerance ? 0.95 : 0.98) * tolerance / error, 0.2, 5.0);
+  }
+  return tried;
+}
+
+FileSetting SettingChooser::with_fewer_nodes(const ChosenNodes& nodes, FileSetting setting,
+                                             double tolerance) const {
+  std::vector<int> sizes;
+  for (const Axis& axis : std::get<Grid>(setting.samples).axes) sizes.push_back(axis.size);
+  const std::size_t axes = sizes.size();
+  // Fewer on one axis, and one more on another (none where `grown` is no axis).
+  const auto shrink = [&](std::size_t axis, std::size_t grown, double share) {
+    std::vector<int> others = sizes;
+    others[axis] -= std::max(1, static_cast<int>(std::lround(share * sizes[axis])));
+    if (grown < axes) ++others[grown];
+    if (others[axis] < 2) return false;
+    FileSetting smaller = with_samples(setting, nodes.grid(others));
+    if (bytes(smaller) >= bytes(setting)) return false;
+    predict(smaller);
+    if (!meets(smaller, tolerance)) return false;
+    setting = std::move(smaller);
+    sizes = std::move(others);
+    return true;
+  };
+  constexpr double kFinest = 0.03;
+  for (const double share : {0.1, kFinest}) {
+    for (bool smaller = true; smaller;) {
+      smaller = false;
+      for (std::size_t a = 0; a < axes; ++a) smaller = shrink(a, axes, share) || smaller;
+      // At times it pays to have one more on another axis.
+      for (std::size_t k = 0; share == kFinest && k < axes * axes && !smaller; ++k) {
+        smaller = k / axes != k % axes && shrink(k / axes, k % axes, share);
       }
     }
-    tried.push_back(std::move(setting));
   }
+  return setting;
 }
 
 void SettingChooser::choose_scale(double tolerance, std::vector<FileSetting>& tried) const {

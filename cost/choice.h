@@ -41,6 +41,9 @@ class SettingChooser {
   void measure(FileSetting& setting) const;
   bool meets(const FileSetting& setting, double tolerance) const;
   void choose_nodes(double tolerance, std::vector<FileSetting>& tried) const;
+  std::vector<FileSetting> nodes_for(const ChosenNodes& nodes, double tolerance, bool half) const;
+  FileSetting with_fewer_nodes(const ChosenNodes& nodes, FileSetting setting,
+                               double tolerance) const;
   void choose_scale(double tolerance, std::vector<FileSetting>& tried) const;
   void choose_bytes(double tolerance, std::vector<FileSetting>& tried) const;
   void choose_cells(std::vector<FileSetting>& tried) const;

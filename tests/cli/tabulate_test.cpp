@@ -183,6 +183,22 @@ TEST_CASE("formats with a size get the bytes that a tolerance needs") {
   CHECK(table_of(bsdf).spec().provenance.error);
 }
 
+TEST_CASE("grids of free sizes get the cells that a tolerance needs") {
+  const TemporaryFolder folder;
+  const std::string alta = (folder / "cotton.dat").string();
+  const std::string cotton = preset("cotton").string();
+  std::vector<double> bytes;
+  for (const char* tolerance : {"0.2", "0.05", "0.025"}) {
+    const json told =
+        json_lines(output_of({"tabulate", cotton, "--tolerance", tolerance, "--json", "-o", alta}))
+            .at(0);
+    CHECK(told["error"]["rms"] <= std::stod(tolerance));
+    bytes.push_back(told["bytes"]);
+  }
+  CHECK(bytes[0] < bytes[1]);
+  CHECK(bytes[1] < bytes[2]);
+}
+
 TEST_CASE("options that --tolerance decides itself, or that need it, are refused") {
   for (const Arguments& wrong :
        std::vector<Arguments>{{"--tolerance", "0.01", "--grid", "halfdiff4d"},
