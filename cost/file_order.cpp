@@ -34,8 +34,10 @@ void write_setting(const FileOrder& order, const FileSetting& setting, AtomicFil
   TableSpec spec = computed_spec(order, setting);
   spec.provenance.error = error;
   if (workers.progress != nullptr) {
-    workers.progress->begin(std::filesystem::path(order.name).filename().string(),
-                            order.format->layout(spec, options).cells, "cells");
+    const Layout layout =
+        order.format->layout(in_colours_of(*order.format, spec, options), options);
+    workers.progress->begin(std::filesystem::path(order.name).filename().string(), layout.cells,
+                            "cells");
   }
   const bool single = order.format->precision(options).relative >= 0x1p-24;
   const auto producer =

@@ -13,6 +13,7 @@
 #include "cost/plan.h"
 #include "cost/prediction.h"
 #include "cost/timing.h"
+#include "formats/format_colours.h"
 #include "support/peak_memory.h"
 #include "support/version.h"
 #include "tabulate/model_producer.h"
@@ -94,7 +95,8 @@ void measure_file(const FileOrder& any, const PlannedFile& file, const Exact& ex
   if (!is_allowed(order, setting)) return;
   const Measured measured = measured_file(order, setting, workers);
   const TableSpec spec = computed_spec(order, setting);
-  const Layout layout = order.format->layout(spec, order.options);
+  const Layout layout =
+      order.format->layout(in_colours_of(*order.format, spec, order.options), order.options);
   const double relative = order.format->precision(order.options).relative;
   // A format may hold other colours than the material has.
   std::optional<Exact> in_its_colours;

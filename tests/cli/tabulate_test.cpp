@@ -199,6 +199,19 @@ TEST_CASE("grids of free sizes get the cells that a tolerance needs") {
   CHECK(bytes[1] < bytes[2]);
 }
 
+TEST_CASE("files of other colours than the material's are written and measured in theirs") {
+  const TemporaryFolder folder;
+  const std::string bsdf = (folder / "silk.bsdf").string();
+  const Arguments spectral = {"tabulate", kSilk, "--flavour", "spectral", "--json", "-o", bsdf};
+  CHECK(json_lines(output_of(spectral)).at(0)["channels"] > 3);
+  Arguments exact = spectral;
+  exact.insert(exact.end(), {"--tolerance", "0.2"});
+  CHECK(json_lines(output_of(exact)).at(0)["error"]["rms"] <= 0.2);
+  Arguments dry = spectral;
+  dry.emplace_back("--dry-run");
+  CHECK(json_lines(output_of(dry)).at(0)["predicted"]["error"]["rms"] < 0.2);
+}
+
 TEST_CASE("options that --tolerance decides itself, or that need it, are refused") {
   for (const Arguments& wrong :
        std::vector<Arguments>{{"--tolerance", "0.01", "--grid", "halfdiff4d"},
