@@ -50,7 +50,7 @@ std::vector<PlannedFile> isotropic_files(const ChosenNodes& nodes, Reflectance r
     files.back().even_axes = true;
   }
   add_chosen(nodes, files, {1, 0.3, 0.1, 0.03, 0.01, 0.003, 0.001, 0.0002, 0.0001});
-  files.push_back({"half floats, MERL's theta_h", ".exr", grid(90, 90, 180), {}, true});
+  files.push_back({"regular, half", ".exr", grid(90, 90, 180), {}, true});
   files.push_back({"doubles", ".binary", halfdiff3d(), {}, false, 0, both()});
   if (!paper) {
     for (const int n : {23, 45}) {
@@ -89,7 +89,7 @@ std::vector<PlannedFile> anisotropic_files(const ChosenNodes& nodes, Reflectance
     files.push_back({names[axis], ".exr", grid(sizes), {}});
   }
   add_chosen(nodes, files, {1, 0.3, 0.1, 0.03, 0.01, 0.003, 0.0009});
-  files.push_back({"half floats, MERL's theta_h", ".exr", grid({45, 36, 45, 45}), {}, true});
+  files.push_back({"regular, half", ".exr", grid({45, 36, 45, 45}), {}, true});
   files.push_back({"in/out nodes", ".exr", inout(), {}, false, 0, both()});
   files.push_back({"in/out nodes", ".exr", inout(12, 72, 12, 72), {}, false, 0, both()});
   if (!paper) {
