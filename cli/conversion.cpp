@@ -70,11 +70,11 @@ std::vector<std::string> what_is_lost(const Table& source, const Conversion& con
   if (const std::string colours = colours_note(from, to); !colours.empty()) {
     lost.push_back(colours);
   }
-  const auto [rounding, step] = format.precision(options);
-  if (rounding > source.precision().relative) {
+  const StoredPrecision stored = format.precision(options);
+  if (stored.relative > source.precision().relative) {
     std::ostringstream text;
-    text << "digits: rounded by up to " << std::setprecision(2) << rounding
-         << " of the value, or by " << step / 2 << " where that is more";
+    text << "digits: rounded by up to " << std::setprecision(2) << stored.relative
+         << " of the value, or by " << stored.step / 2 << " where that is more";
     lost.push_back(text.str());
   }
   if (!format.keeps_description && !from.provenance.program.empty()) {

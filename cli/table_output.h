@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "cost/dry_run.h"
 #include "cost/verified.h"
 
 namespace clothbrdf {

@@ -21,10 +21,6 @@ bool has_option(const Format& format, std::string_view option) {
   return std::find(format.options.begin(), format.options.end(), option) != format.options.end();
 }
 
-std::size_t stored_bytes(const StoredPrecision& precision) {
-  return precision.relative >= 0x1p-11 ? 2 : precision.relative >= 0x1p-24 ? 4 : 8;
-}
-
 FileSetting with_samples(FileSetting setting, Samples samples) {
   setting.samples = std::move(samples);
   return setting;
@@ -65,8 +61,8 @@ double SettingChooser::bytes(const FileSetting& setting) const {
   if (grid == nullptr) return 0;  // the format has one size only
   double cells = 1;
   for (const Axis& axis : grid->axes) cells *= axis.size;
-  return cells * static_cast<double>(model_.get().spec().channels.size() *
-                                     stored_bytes(order_.format->precision(setting.options)));
+  return cells * static_cast<double>(model_.get().spec().channels.size()) *
+         order_.format->precision(setting.options).bytes;
 }
 
 void SettingChooser::predict(FileSetting& setting) const {
@@ -126,19 +122,25 @@ void SettingChooser::choose_nodes(double tolerance, std::vector<FileSetting>& tr
   const ChosenNodes nodes(model_.get(), exact_.sampled, exact_.values, target_.metric, workers_);
   // Below this the rounding of half floats is felt; above it they only save.
   constexpr double kHalfIsFine = 3e-3;
-  std::vector<bool> halves = {order_.options.half};
-  if (!order_.options.half && has_option(*order_.format, "--half")) {
-    halves = tolerance >= kHalfIsFine ? std::vector<bool>{true} : std::vector<bool>{true, false};
-  }
-  for (const bool half : halves) {
+  const bool both = !order_.options.half && has_option(*order_.format, "--half");
+  bool found = false;
+  for (const bool half : both ? std::vector<bool>{true, false} : std::vector{order_.options.half}) {
+    if (both && !half && found && tolerance >= kHalfIsFine) continue;
     std::vector<FileSetting> of_type = nodes_for(nodes, tolerance, half);
     // The best that was found, with fewer nodes wherever they are not missed.
     const FileSetting* best = nullptr;
     for (const FileSetting& s : of_type) {
       if (meets(s, tolerance) && (best == nullptr || bytes(s) < bytes(*best))) best = &s;
     }
-    if (best != nullptr) tried.push_back(with_fewer_nodes(nodes, *best, tolerance));
-    tried.insert(tried.end(), of_type.begin(), of_type.end());
+    if (best != nullptr) {
+      FileSetting fewer = with_fewer_nodes(nodes, *best, tolerance);
+      // f has no bound at grazing light, where no error is counted; half floats end at 65504.
+      if (half && !values_fit(order_, fewer, workers_)) continue;
+      found = true;
+      tried.push_back(std::move(fewer));
+    } else {
+      tried.insert(tried.end(), of_type.begin(), of_type.end());
+    }
   }
 }
 

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "cost/evaluation.h"
-#include "tabulate/isotropic_mean.h"
 #include "tabulate/kernel.h"
+#include "tabulate/model_producer.h"
 
 namespace clothbrdf {
 namespace {
@@ -151,13 +151,15 @@ class Fidelity {
   void rotations() {
     const ClothModel<double> model(material_);
     std::vector<double> reference(exact_.size());
-    closed_form(model, reference);
+    // In closed form.
+    const auto mean_model = make_producer(material_spec(material_, {}, AnyPairs{true}), workers_);
+    fill_all_pairs(*mean_model, workers_, sampled_.pairs, reference);
     const BatchEvaluator<double> evaluator(model, channels_, workers_);
     for (const int steps : kRotations) {
       std::vector<double> mean(exact_.size());
       for (int k = 0; k < steps; ++k) {
-        const Evaluation<double> turned(turned_pairs(180.0 * k / steps), channels_.size());
-        const std::vector<double> values = turned.values(evaluator, workers_);
+        const Evaluation<double> evaluation(turned_pairs(180.0 * k / steps), channels_.size());
+        const std::vector<double> values = evaluation.values(evaluator, workers_);
         for (std::size_t i = 0; i < mean.size(); ++i) mean[i] += values[i] / steps;
       }
       CostSetting setting =
@@ -175,30 +177,12 @@ class Fidelity {
   /// As a cloth turned the other way sees them.
   std::vector<Directions> turned_pairs(double angle_deg) const {
     const SinCos<double> turn = sincosd(angle_deg);
-    const auto turned = [&](const Vector3<double>& w) {
-      return Vector3<double>{w[0] * turn.cos - w[1] * turn.sin, w[0] * turn.sin + w[1] * turn.cos,
-                             w[2]};
-    };
     std::vector<Directions> pairs;
     pairs.reserve(sampled_.pairs.size());
-    for (const Directions& pair : sampled_.pairs)
-      pairs.push_back({turned(pair.wi), turned(pair.wo)});
+    for (const Directions& pair : sampled_.pairs) {
+      pairs.push_back({turned(pair.wi, turn), turned(pair.wo, turn)});
+    }
     return pairs;
-  }
-
-  void closed_form(const ClothModel<double>& model, std::span<double> values) const {
-    const IsotropicMean mean(model, channels_, workers_);
-    constexpr std::size_t kBlock = 1024;
-    const std::size_t blocks = (sampled_.pairs.size() + kBlock - 1) / kBlock;
-    with_threads(workers_.threads, [&] {
-      tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t block) {
-        workers_.check();
-        const std::size_t first = block * kBlock;
-        const std::size_t count = std::min(kBlock, sampled_.pairs.size() - first);
-        mean.fill(std::span(sampled_.pairs).subspan(first, count),
-                  values.subspan(first * channels_.size(), count * channels_.size()));
-      });
-    });
   }
 
   const Material& material_;

@@ -1,5 +1,8 @@
 #include "cost/file_order.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "formats/format_colours.h"
 #include "support/errors.h"
 #include "tabulate/model_producer.h"
@@ -27,6 +30,23 @@ bool is_allowed(const FileOrder& order, const FileSetting& setting) {
   }
 }
 
+Precision kernel_precision(const FileOrder& order, const FileSetting& setting) {
+  const bool single = order.format->precision(setting.options).relative >= 0x1p-24;
+  return single ? Precision::kSingle : Precision::kDouble;
+}
+
+bool values_fit(const FileOrder& order, const FileSetting& setting, const Workers& workers) {
+  const double largest = order.format->precision(setting.options).largest;
+  const auto producer = make_producer(computed_spec(order, setting), workers.threads,
+                                      kernel_precision(order, setting));
+  bool fit = true;
+  stream_rows(*producer, workers.threads, [&](std::size_t, std::span<double> values) {
+    fit = fit && std::all_of(values.begin(), values.end(),
+                             [&](double value) { return std::abs(value) <= largest; });
+  });
+  return fit;
+}
+
 void write_setting(const FileOrder& order, const FileSetting& setting, AtomicFile& file,
                    const Workers& workers, const std::optional<MeasuredError>& error) {
   WriteOptions options = setting.options;
@@ -39,9 +59,7 @@ void write_setting(const FileOrder& order, const FileSetting& setting, AtomicFil
     workers.progress->begin(std::filesystem::path(order.name).filename().string(), layout.cells,
                             "cells");
   }
-  const bool single = order.format->precision(options).relative >= 0x1p-24;
-  const auto producer =
-      make_producer(spec, workers, single ? Precision::kSingle : Precision::kDouble);
+  const auto producer = make_producer(spec, workers, kernel_precision(order, setting));
   const auto coloured = in_colours_of(*order.format, *producer, options);
   write_table(*order.format, coloured ? *coloured : *producer, file, options);
   workers.check();

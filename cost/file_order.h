@@ -6,6 +6,7 @@
 #include "formats/format.h"
 #include "model/effects.h"
 #include "model/material.h"
+#include "tabulate/kernel.h"
 
 namespace clothbrdf {
 
@@ -34,6 +35,12 @@ TableSpec computed_spec(const FileOrder& order, const FileSetting& setting);
 /// Throws InputError where the format, or the model, cannot do it.
 void check_setting(const FileOrder& order, const FileSetting& setting);
 bool is_allowed(const FileOrder& order, const FileSetting& setting);
+
+/// The precision that the kernels need for a file.
+Precision kernel_precision(const FileOrder& order, const FileSetting& setting);
+
+/// Whether no value of a grid is larger than the file can store: computes them all.
+bool values_fit(const FileOrder& order, const FileSetting& setting, const Workers& workers);
 
 /// All of a file's content, with `error` in its description where that is given; the caller
 /// commits. Begins a phase of the workers' progress.

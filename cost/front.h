@@ -17,8 +17,8 @@ void mark_fronts(std::vector<CostSetting>& settings);
 /// What marked settings say, for people:
 ///
 /// - for each front of files and target of 10, 3, 1, 0.3, 0.1 and 0.03 % rms what reaches it
-/// soonest
-///   (once where it reaches several, for the tightest), and the first target that nothing reaches;
+///   soonest (once where it reaches several, for the tightest), and the first target that nothing
+///   reaches;
 /// - what single paths and fewer layers save and cost against all paths (nothing where it is less
 ///   than 5 % or the timings overlap);
 /// - how many times fewer cells of a 4-D grid "chosen nodes" need than "uniform axes" at one error,

@@ -14,6 +14,7 @@
 #include "cost/prediction.h"
 #include "cost/timing.h"
 #include "formats/format_colours.h"
+#include "model/parameters.h"
 #include "support/peak_memory.h"
 #include "support/version.h"
 #include "tabulate/model_producer.h"
@@ -32,18 +33,12 @@ double seconds_of(const std::function<void()>& work) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-std::string number_text(double value) {
-  std::string text = std::to_string(value);
-  return text.substr(0, text.find_last_not_of("0.") + 1);
-}
-
 // Computing all values of a grid, and dropping them.
 Timing computing_time(const FileOrder& order, const FileSetting& setting, int threads) {
   return timing_of(kRepeats, [&] {
     return seconds_of([&] {
-      const bool single = order.format->precision(setting.options).relative >= 0x1p-24;
-      const auto producer = make_producer(computed_spec(order, setting), threads,
-                                          single ? Precision::kSingle : Precision::kDouble);
+      const auto producer =
+          make_producer(computed_spec(order, setting), threads, kernel_precision(order, setting));
       stream_rows(*producer, threads, [](std::size_t, std::span<double>) {});
     });
   });
@@ -93,11 +88,12 @@ void measure_file(const FileOrder& any, const PlannedFile& file, const Exact& ex
   if (file.bytes > 0) order.options.bytes = file.bytes;
   const FileSetting setting{file.samples, file.cells, order.options};
   if (!is_allowed(order, setting)) return;
+  if (file.half && !values_fit(order, setting, workers)) return;
   const Measured measured = measured_file(order, setting, workers);
   const TableSpec spec = computed_spec(order, setting);
   const Layout layout =
       order.format->layout(in_colours_of(*order.format, spec, order.options), order.options);
-  const double relative = order.format->precision(order.options).relative;
+  const int bytes = order.format->precision(order.options).bytes;
   // A format may hold other colours than the material has.
   std::optional<Exact> in_its_colours;
   if (measured.table.spec().channels.size() != spec.channels.size()) {
@@ -112,7 +108,7 @@ void measure_file(const FileOrder& any, const PlannedFile& file, const Exact& ex
     s.grid = file.even_axes ? std::get<Grid>(file.samples).sizes() + " even in angle"
                             : layout.description;
     s.cells = file.cells.average ? "average:" + number_text(file.cells.tolerance) : "point";
-    s.stored = relative >= 0x1p-11 ? "half" : relative >= 0x1p-24 ? "float" : "double";
+    s.stored = bytes == 2 ? "half" : bytes == 4 ? "float" : "double";
     s.reader = measured.table.interpolant() ? "its own" : reader_name(measured.table, reader);
     s.size = static_cast<double>(layout.cells);
     s.error = error_of(measured.table, reader, in_its_colours ? *in_its_colours : exact, workers);

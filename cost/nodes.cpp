@@ -22,7 +22,8 @@ std::vector<double> outer_nodes(const Axis& axis) {
 std::vector<Axis> symmetric_axes(const TableSpec& spec) {
   const Material& material = spec.provenance.material.value();
   const double around = material.reflectance == Reflectance::kPaper ? 180 : 90;
-  const double turn = material.rotation_deg - 90 * std::floor(material.rotation_deg / 90);
+  const double beyond = std::fmod(material.rotation_deg, 90);  // exact, whatever its size
+  const double turn = beyond < 0 ? beyond + 90 : beyond;
   std::vector<Axis> axes = {{"theta_h", Spacing::kListed, 0, 0, 90, false, false}};
   if (!spec.isotropic()) {
     axes.push_back({"phi_h", Spacing::kListed, 0, turn, turn + 90, false, true});

@@ -26,8 +26,6 @@ class ChosenNodes {
   ChosenNodes(const Producer& model, const SampledPairs& sampled, std::span<const double> exact,
               Metric metric, const Workers& workers);
 
-  std::size_t axis_count() const { return axes_.size(); }
-
   /// A grid of so many nodes on each axis, two or more.
   Grid grid(std::span<const int> sizes) const;
 

@@ -16,30 +16,17 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// JSON has no word for other numbers.
-void put(Json& object, const char* key, double value) {
-  if (std::isfinite(value)) object[key] = value;
-}
-
-void put(Json& object, const char* key, const std::optional<double>& value) {
-  if (value) put(object, key, *value);
-}
-
-void put(Json& object, const char* key, const std::optional<std::uint64_t>& value) {
+void put_count(Json& object, const char* key, const std::optional<std::uint64_t>& value) {
   if (value) object[key] = *value;
 }
 
-void put(Json& object, const char* key, const std::optional<Timing>& timing) {
+void put_timing(Json& object, const char* key, const std::optional<Timing>& timing) {
   if (!timing) return;
   Json json = Json::object();
   put(json, "median", timing->median);
   put(json, "lowest", timing->lowest);
   put(json, "highest", timing->highest);
   object[key] = json;
-}
-
-void put_words(Json& object, const char* key, const std::string& words) {
-  if (!words.empty()) object[key] = words;
 }
 
 Json setting_json(const CostSetting& setting) {
@@ -56,12 +43,12 @@ Json setting_json(const CostSetting& setting) {
   put(error, "max", setting.error.max);
   json["error"] = error;
   put(json, "isotropy_loss", setting.isotropy_loss);
-  put(json, "seconds", std::optional(setting.seconds));
-  put(json, "one_thread_seconds", setting.one_thread);
-  put(json, "all_threads_seconds", setting.all_threads);
-  put(json, "write_seconds", setting.writing);
-  put(json, "bytes", setting.bytes);
-  put(json, "peak_memory_bytes", setting.peak_memory);
+  put_timing(json, "seconds", setting.seconds);
+  put_timing(json, "one_thread_seconds", setting.one_thread);
+  put_timing(json, "all_threads_seconds", setting.all_threads);
+  put_timing(json, "write_seconds", setting.writing);
+  put_count(json, "bytes", setting.bytes);
+  put_count(json, "peak_memory_bytes", setting.peak_memory);
   json["pareto"] = setting.pareto;
   return json;
 }

@@ -113,13 +113,17 @@ bool all_fit(std::span<const double> values, double largest) {
   return beyond == 0;
 }
 
+StoredPrecision exr_precision(const WriteOptions& options) {
+  return options.half ? StoredPrecision{0x1p-11, 0x1p-24, HALF_MAX, 2}
+                      : StoredPrecision{0x1p-24, 0x1p-149, std::numeric_limits<float>::max(), 4};
+}
+
 template <class Sample>
 void write_lines(const Producer& producer, Imf::OutputFile& out, Imf::PixelType type,
                  const std::string& name, Workers workers) {
   const TableSpec& spec = producer.spec();
   const PictureSize size = picture_size(spec);
-  const double largest =
-      type == Imf::HALF ? double{HALF_MAX} : double{std::numeric_limits<float>::max()};
+  const double largest = exr_precision({.half = type == Imf::HALF}).largest;
   RowBuffer<Sample> buffer(spec, size, type);
   const auto check = [&](std::size_t row, std::span<double> values) {
     if (all_fit(values, largest)) return;
@@ -144,10 +148,6 @@ void write_lines(const Producer& producer, Imf::OutputFile& out, Imf::PixelType 
 Samples exr_samples(Reflectance reflectance, bool isotropic) {
   return parse_grid(isotropic ? "halfdiff3d" : "halfdiff4d",
                     reflectance == Reflectance::kPaper ? 360 : 180);
-}
-
-StoredPrecision exr_precision(const WriteOptions& options) {
-  return options.half ? StoredPrecision{0x1p-11, 0x1p-24} : StoredPrecision{0x1p-24, 0x1p-149};
 }
 
 void check_exr(const TableSpec& spec, const WriteOptions& /*all are allowed*/,

@@ -14,19 +14,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// JSON has no word for other numbers.
-void put(Json& object, const char* key, double value) {
-  if (std::isfinite(value)) object[key] = value;
-}
-
-void put(Json& object, const char* key, const std::optional<double>& value) {
-  if (value) put(object, key, *value);
-}
-
-void put_words(Json& object, const char* key, const std::string& words) {
-  if (!words.empty()) object[key] = words;
-}
-
 // A report of a failure has a material without absorption values.
 void put_material(Json& object, const Material& material) {
   if (!find_problem(material)) object["material"] = Json::parse(material_to_json(material));

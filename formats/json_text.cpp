@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
@@ -318,6 +319,18 @@ nlohmann::json parse_json(std::string_view text, const std::string& file_name) {
   }
   json::sax_parse(text, &builder);
   return builder.take();
+}
+
+void put(nlohmann::ordered_json& object, const char* key, double value) {
+  if (std::isfinite(value)) object[key] = value;
+}
+
+void put(nlohmann::ordered_json& object, const char* key, const std::optional<double>& value) {
+  if (value) put(object, key, *value);
+}
+
+void put_words(nlohmann::ordered_json& object, const char* key, const std::string& words) {
+  if (!words.empty()) object[key] = words;
 }
 
 }  // namespace clothbrdf

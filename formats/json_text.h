@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -38,6 +39,11 @@ std::string one_line(std::string_view text, std::size_t longest = 60);
 /// The text of a file that holds `value`: what fits goes on a line of its own, the rest is broken
 /// up. Bytes that are no UTF-8 are replaced, so that what is written can be read.
 std::string laid_out(const nlohmann::ordered_json& value);
+
+/// Sets a member where there is something to say: JSON has no word for numbers that are not finite.
+void put(nlohmann::ordered_json& object, const char* key, double value);
+void put(nlohmann::ordered_json& object, const char* key, const std::optional<double>& value);
+void put_words(nlohmann::ordered_json& object, const char* key, const std::string& words);
 
 /// A step of a JSON pointer, "/name" (RFC 6901), fit for a message.
 std::string pointer_step(std::string_view key);

@@ -180,7 +180,7 @@ Format mdl_format() {
           .averages = "",
           .precision =
               [](const WriteOptions&) {
-                return StoredPrecision{0x1p-24, 0x1p-149};
+                return StoredPrecision{0x1p-24, 0x1p-149, std::numeric_limits<float>::max(), 4};
               },
           .check = check_mdl,
           .layout = mdl_layout,

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <memory>
 #include <numbers>
 #include <string>
@@ -217,7 +218,8 @@ Table read_mdl(const std::filesystem::path& path) {
   std::vector<double> values(stored.begin(), stored.end());
   std::vector<std::uint8_t> valid(sizes.node_count(), 1);
   auto interpolant = std::make_shared<MdlInterpolant>(sizes, std::move(stored));
-  return {std::move(spec), std::move(values), std::move(valid), StoredPrecision{0x1p-24, 0x1p-149},
+  return {std::move(spec), std::move(values), std::move(valid),
+          StoredPrecision{0x1p-24, 0x1p-149, std::numeric_limits<float>::max(), 4},
           std::move(interpolant)};
 }
 

@@ -1,5 +1,6 @@
 #include "formats/rgl.h"
 
+#include <limits>
 #include <string>
 
 #include "formats/rgl_layout.h"
@@ -59,7 +60,7 @@ Format rgl_format() {
       .averages = "",
       .precision =
           [](const WriteOptions&) {
-            return StoredPrecision{0x1p-24, 0x1p-149};
+            return StoredPrecision{0x1p-24, 0x1p-149, std::numeric_limits<float>::max(), 4};
           },
       .check = check_rgl,
       .layout = [](const TableSpec& spec, const WriteOptions& options) -> Layout {

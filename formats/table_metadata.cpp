@@ -1,6 +1,7 @@
 #include "formats/table_metadata.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <iterator>
 #include <nlohmann/json.hpp>
@@ -91,8 +92,11 @@ bool known_listed(const Axis& axis) {
   if (axis.name.starts_with("theta")) {
     return !axis.mirrored && axis.lowest_deg == 0 && axis.highest_deg == 90;
   }
-  return axis.mirrored && (range == 90 || range == 180) &&
-         (axis.lowest_deg == 0 || axis.name == "phi_h");
+  // Ends that are sums of a rotation are rounded.
+  constexpr double kRounding = 1e-9;
+  const auto is = [&](double wanted) { return std::abs(range - wanted) <= kRounding; };
+  return axis.mirrored &&
+         (axis.name == "phi_h" ? is(90) : axis.lowest_deg == 0 && (range == 90 || range == 180));
 }
 
 // A grid must be one that this program can make, whatever its sizes.

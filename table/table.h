@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -13,6 +14,8 @@ namespace clothbrdf {
 struct StoredPrecision {
   double relative = 0x1p-53;  ///< largest rounding of a normal number
   double step = 0;            ///< between the smallest numbers
+  double largest = std::numeric_limits<double>::max();
+  int bytes = 8;  ///< of a value, where all values take the same
 
   bool operator==(const StoredPrecision&) const = default;
 };

@@ -183,6 +183,26 @@ TEST_CASE("formats with a size get the bytes that a tolerance needs") {
   CHECK(table_of(bsdf).spec().provenance.error);
 }
 
+TEST_CASE("where half floats end before the values do, a tolerance is met with floats") {
+  const TemporaryFolder folder;
+  const std::string exr = (folder / "paper.exr").string();
+  Material narrow = read_material(preset("silk"));
+  narrow.warp.lobe_axes = {0.001, 0.05};
+  narrow.weft.lobe_axes = {0.05, 0.001};
+  const std::string material = (folder / "narrow.json").string();
+  {
+    AtomicFile file(material);
+    const std::string text = material_to_json(narrow);
+    file.write_at(0, std::as_bytes(std::span(text)));
+    file.commit();
+  }
+  const json told = json_lines(output_of({"tabulate", material, "--isotropic", "--isotropic-ok",
+                                          "--tolerance", "0.1", "--json", "-o", exr}))
+                        .at(0);
+  CHECK(told["error"]["rms"] <= 0.1);
+  CHECK(table_of(exr).precision().bytes == 4);
+}
+
 TEST_CASE("grids of free sizes get the cells that a tolerance needs") {
   const TemporaryFolder folder;
   const std::string alta = (folder / "cotton.dat").string();

@@ -1,6 +1,9 @@
 #include "cost/nodes.h"
 
+#include <random>
+
 #include "cost/prediction.h"
+#include "formats/table_metadata.h"
 #include "tests/catch.h"
 #include "tests/support/make_table.h"
 
@@ -84,6 +87,25 @@ TEST_CASE("chosen nodes err less than uniform ones between the same ends") {
   const double ratio = rms(c, even) / rms(c, grid);
   INFO("uniform nodes err " << ratio << " times as much");
   CHECK(ratio > 2);
+}
+
+TEST_CASE("the description of chosen nodes is read again, whatever the rotation of the weave") {
+  Material silk = read_material(preset("silk"));
+  std::mt19937_64 engine(3);
+  std::uniform_real_distribution<double> rotation(-720, 720);
+  std::vector<double> rotations = {30.1, -30.1, 89.99999999999999, 1e18, -1e300, 5e-324, -5e-324};
+  for (int k = 0; k < 100; ++k) rotations.push_back(rotation(engine));
+  const SampledPairs sampled = sampled_pairs(100, 1);
+  for (const double turn : rotations) {
+    silk.rotation_deg = turn;
+    const auto model = make_producer(material_spec(silk, {}, AnyPairs{}), 1);
+    std::vector<double> exact(3 * sampled.pairs.size());
+    model->fill_pairs(sampled.pairs, exact);
+    const ChosenNodes nodes(*model, sampled, exact, Metric::kRms, 1);
+    const TableSpec spec = material_spec(silk, {}, nodes.grid(std::vector{3, 4, 5, 3}));
+    INFO("seed 3, rotation " << turn);
+    CHECK(parse_table_metadata(table_metadata(spec), "t.exr") == spec);
+  }
 }
 
 TEST_CASE("axes begin where the weave lies") {
