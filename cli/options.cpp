@@ -12,28 +12,14 @@
 namespace clothbrdf {
 
 Effects parse_effects(const std::string& list) {
-  Effects effects{.specular = false, .internal = false, .diffuse = false};
-  std::string known;
-  for (const EffectName& effect : kEffectNames) {
-    known.append(known.empty() ? "" : ", ").append(effect.name);
-  }
-  const auto fail = [&](const std::string& what) {
-    return InputError("--effects: " + what + "; allowed: " + known + ", joined by ','");
-  };
-  std::istringstream names(list);
-  bool any = false;
-  for (std::string name; std::getline(names, name, ',');) {
-    bool found = false;
-    for (const EffectName& effect : kEffectNames) {
-      if (effect.name == name) {
-        effects.*effect.member = true;
-        any = found = true;
-      }
-    }
-    if (!found) throw fail("'" + name + "' is not an effect");
-  }
-  if (!any) throw fail("names none");
-  return effects;
+  std::vector<std::string> words;
+  std::istringstream in(list);
+  for (std::string word; std::getline(in, word, ',');) words.push_back(word);
+  if (words.empty()) words.emplace_back();
+  std::string problem;
+  const std::optional<Effects> effects = effects_from_words(words, problem);
+  if (!effects) throw InputError("--effects: " + problem);
+  return *effects;
 }
 
 CellRule parse_cells(const std::string& text) {
@@ -132,9 +118,7 @@ void write_text(const std::string& text, AtomicFile& file) {
 
 std::string effects_text(const Effects& effects) {
   std::string text;
-  for (const EffectName& effect : kEffectNames) {
-    if (effects.*effect.member) text += (text.empty() ? "" : ", ") + std::string(effect.name);
-  }
+  for (const std::string& word : effect_words(effects)) text += (text.empty() ? "" : ", ") + word;
   return text;
 }
 

@@ -17,7 +17,7 @@ namespace clothbrdf {
 // Options that several commands share, from text to values. All throw InputError that names the
 // option, what was given and what is allowed.
 
-/// "specular,diffuse": the components named are on, the others off.
+/// "specular,no-scatter": effects from words joined by ',' (model/effects.h).
 Effects parse_effects(const std::string& list);
 
 /// "point", "average" or "average:REL".
@@ -61,7 +61,7 @@ Table read_table(const std::string& file);
 /// All of a file's content; the caller commits.
 void write_text(const std::string& text, AtomicFile& file);
 
-/// "specular, diffuse", for people.
+/// "specular, internal:4, no-scatter", for people.
 std::string effects_text(const Effects& effects);
 
 }  // namespace clothbrdf

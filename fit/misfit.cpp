@@ -119,7 +119,7 @@ struct Prepared {
     jets.weights.diffuse = Jet(material.weights.diffuse, 2);
     jets.diffuse_path = Jet(material.diffuse_path, 3);
     jets.warp_fraction = Jet(material.warp_fraction, 4);
-    const Jet d = diffuse_reflectance(jets, 0);
+    const Jet d = diffuse_reflectance(jets, {jets.warp_fraction, Jet(1) - jets.warp_fraction}, 0);
     Row row{};
     row[kResidual] = d.a;
     for (std::size_t k = 0; k < std::size(kColumns); ++k)

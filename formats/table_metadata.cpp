@@ -148,10 +148,7 @@ std::string table_metadata(const TableSpec& spec) {
   }
   json["cells"] = {{"rule", spec.cells.average ? "average" : "point"}};
   if (spec.cells.average) json["cells"]["tolerance"] = spec.cells.tolerance;
-  json["effects"] = Json::array();
-  for (const EffectName& effect : kEffectNames) {
-    if (from.effects.*effect.member) json["effects"].push_back(effect.name);
-  }
+  json["effects"] = effect_words(from.effects);
   if (from.error) {
     const MeasuredError& e = *from.error;
     json["error"] = {{"rms", e.error.rms}, {"p99", e.error.p99},
@@ -181,11 +178,11 @@ TableSpec parse_table_metadata(std::string_view text, const std::string& name) {
   }
   spec.cells.average = json["cells"]["rule"] == "average";
   spec.cells.tolerance = json["cells"].value("tolerance", spec.cells.tolerance);
-  for (const EffectName& effect : kEffectNames) {
-    spec.provenance.effects.*effect.member =
-        std::find(json["effects"].begin(), json["effects"].end(), effect.name) !=
-        json["effects"].end();
-  }
+  std::string problem;
+  const std::optional<Effects> effects =
+      effects_from_words(json["effects"].get<std::vector<std::string>>(), problem);
+  if (!effects) throw InputError(name + ": /effects: " + problem);
+  spec.provenance.effects = *effects;
   spec.provenance.program = json["program"].get<std::string>();
   if (json.contains("material"))
     spec.provenance.material = parse_material(json["material"].dump(), name + ": /material");

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -20,6 +21,28 @@ inline constexpr int kMaxLayers = 64;
 /// layers has no end (model.md, section 5).
 inline constexpr int kLastEvent = 1025;
 
+/// Which walks through the layers count. Walks have one reflection, at the far side of a layer or
+/// at the near side of a deeper one, or three and more: interreflections.
+struct PathSet {
+  static constexpr int kAnyEvents = std::numeric_limits<int>::max();
+
+  bool near_sides = true;        ///< those of one reflection, at a near side
+  int most_events = kAnyEvents;  ///< of interreflections; 0: none of them
+
+  PathSet() = default;
+  /// Eq. 4's single paths are those of one reflection at a far side.
+  PathSet(Paths paths) {  // NOLINT(google-explicit-constructor): a name for one of the sets
+    if (paths == Paths::kSingle) *this = PathSet(false, 0);
+  }
+  PathSet(bool with_near_sides, int most) : near_sides(with_near_sides), most_events(most) {}
+
+  bool all() const { return near_sides && most_events == kAnyEvents; }
+  bool operator==(const PathSet&) const = default;
+};
+
+/// Events of the shortest interreflection: in, far side, near side, far side, out.
+inline constexpr int kFewestInterreflectionEvents = 5;
+
 // Light that leaves the top has met an odd number of events (an odd number of reflections, an even
 // number of transmissions), so lobes and weights are indexed by j with E = 2 j + 1; j = 0 is the
 // surface reflection.
@@ -35,10 +58,11 @@ T log_directionality(const T& scatter, int j) {
 /// How many lobes j = 0..n-1 a yarn needs. The last one stands for every later event, too: none
 /// follows, or the axes have stopped changing to 1e-17.
 template <class T>
-int lobe_count(const BasicYarn<T>& yarn, Paths paths) {
+int lobe_count(const BasicYarn<T>& yarn, const PathSet& paths) {
   if (yarn.layers == 0) return 1;
   if (!kCarriesDerivative<T> && yarn.scatter == T(0)) return 2;
-  const int longest = paths == Paths::kAll ? kLastEvent / 2 : 2 * yarn.layers - 1;
+  const int longest =
+      std::max(2 * yarn.layers - 1, (std::min(paths.most_events, kLastEvent) - 1) / 2);
   const T log_tiny = T(-39.2);  // log 1e-17
   int last = 1;
   while (last < longest && yarn.scatter < T(1) && log_directionality(yarn.scatter, last) > log_tiny)
@@ -200,17 +224,153 @@ void all_path_weights(int layers, const Interface<T>& interface, const T& absorp
   weights.back() = stack.remaining();
 }
 
+/// Adds the paths of one reflection at the near side of a deeper layer, E = 4 k - 3 for k = 2..N.
+template <class T>
+void add_near_sides(int layers, const Interface<T>& interface, const T& absorption,
+                    std::span<T> weights) {
+  using std::exp;
+  const T t4 =
+      interface.transmitted * interface.transmitted * interface.transmitted * interface.transmitted;
+  T crossing = interface.reflected;  // r t^(4 k - 4)
+  for (int k = 2; k <= layers; ++k) {
+    crossing *= t4;
+    const T depth = T(2 * (k - 1)) * absorption;
+    const T left = interface.cos_theta_t == T(0) ? passage(absorption, interface.cos_theta_t).once
+                                                 : T(exp(-depth / interface.cos_theta_t));
+    weights[std::min(static_cast<std::size_t>(2 * k - 2), weights.size() - 1)] += crossing * left;
+  }
+}
+
+/// The walks of three and more reflections, event by event. Light is told apart by how often it was
+/// reflected: never (a beam going down), once (going up), or more. Every sum has positive terms
+/// only, also the closed one of all that is still to come.
+///
+/// Medium i (1 to 2 N) lies above interface i and below interface i - 1, interfaces numbered from
+/// 0; it is yarn where i is odd.
+template <class T>
+class InterreflectionWalk {
+ public:
+  InterreflectionWalk(int layers, const Interface<T>& interface, const T& absorption)
+      : media_(2 * static_cast<std::size_t>(layers)),
+        r_(interface.reflected),
+        t_(interface.transmitted),
+        yarn_(passage(absorption, interface.cos_theta_t)),
+        beam_(t_ * yarn_.once) {
+    for (std::size_t i = 0; i <= media_ + 1; ++i) once_up_[i] = down_[i] = up_[i] = T(0);
+  }
+
+  /// One event on. Returns what left through the top.
+  T step() {
+    const T left = t_ * up_[1];
+    std::array<T, kSize> once_up;
+    std::array<T, kSize> down;
+    std::array<T, kSize> up;
+    down[0] = up[media_ + 1] = once_up[media_ + 1] = T(0);
+    for (std::size_t i = 1; i < media_; ++i) {
+      const T met = i == beam_at_ ? beam_ : T(0);
+      once_up[i] = through(i) * (r_ * met + t_ * once_up_[i + 1]);
+      down[i] = through(i) * (t_ * down_[i - 1] + r_ * (up_[i] + once_up_[i]));
+      up[i] = through(i) * (r_ * down_[i] + t_ * up_[i + 1]);
+    }
+    // Below the last interface nothing is reflected.
+    once_up[media_] = down[media_] = up[media_] = T(0);
+    ++beam_at_;
+    beam_ *= t_ * through(beam_at_);
+    once_up_ = once_up;
+    down_ = down;
+    up_ = up;
+    return left;
+  }
+
+  /// All that will still come out.
+  T remaining() const {
+    std::array<T, kSize> reflects;  // of the stack from interface i on: all walks
+    std::array<T, kSize> at_once;   // those of one reflection
+    std::array<T, kSize> later;     // the others
+    std::array<T, kSize> returns;   // of what interface i sends down, what comes back to it
+    std::array<T, kSize> keeps;     // 1 - that
+    reflects[media_] = at_once[media_] = later[media_] = T(0);
+    T below_keeps = T(1);
+    for (std::size_t i = media_; i-- > 0;) {
+      const bool yarn_below = i % 2 == 0;
+      const T twice = yarn_below ? T(yarn_.once * yarn_.once) : T(1);
+      if (yarn_below) below_keeps = yarn_.lost_twice + twice * below_keeps;
+      returns[i] = r_ * twice * reflects[i + 1];
+      keeps[i] = t_ + r_ * below_keeps;
+      const T crossing = t_ * t_ * twice;
+      reflects[i] = r_ + crossing * reflects[i + 1] / keeps[i];
+      at_once[i] = r_ + crossing * at_once[i + 1];
+      later[i] = crossing * (later[i + 1] + at_once[i + 1] * returns[i]) / keeps[i];
+      below_keeps = t_ * below_keeps / keeps[i];
+    }
+    T sum = T(0);
+    T escapes = T(1);          // of light on its way up in the medium above: all walks
+    T escapes_at_once = T(1);  // without another reflection
+    T escapes_later = T(0);    // with some
+    for (std::size_t i = 1; i < media_; ++i) {
+      const T crossing = t_ * (i > 1 ? through(i - 1) : T(1));
+      escapes_later = crossing * (escapes_later + escapes_at_once * returns[i - 1]) / keeps[i - 1];
+      escapes = crossing * escapes / keeps[i - 1];
+      escapes_at_once = crossing * escapes_at_once;
+      sum += up_[i] * escapes + once_up_[i] * escapes_later +
+             down_[i] * reflects[i] * through(i) * escapes;
+      if (i == beam_at_) {
+        sum += beam_ * through(i) * (later[i] * escapes + at_once[i] * escapes_later);
+      }
+    }
+    return sum;
+  }
+
+ private:
+  static constexpr std::size_t kSize = std::size_t{2} * kMaxLayers + 2;
+
+  T through(std::size_t medium) const { return medium % 2 == 1 ? yarn_.once : T(1); }
+
+  std::size_t media_;
+  T r_;
+  T t_;
+  Passage<T> yarn_;
+  // After the same number of events, each about to meet the next interface.
+  T beam_;  // never reflected
+  std::size_t beam_at_ = 1;
+  std::array<T, kSize> once_up_;
+  std::array<T, kSize> down_;
+  std::array<T, kSize> up_;
+};
+
+/// Adds the walks of three and more reflections and at most `most_events` events.
+template <class T>
+void add_interreflections(int layers, const Interface<T>& interface, const T& absorption,
+                          int most_events, std::span<T> weights) {
+  if (layers == 0) return;
+  InterreflectionWalk<T> walk(layers, interface, absorption);
+  const std::size_t last = weights.size() - 1;
+  for (int events = 2; events <= most_events; ++events) {
+    const auto j = static_cast<std::size_t>(events - 1) / 2;
+    if (most_events == PathSet::kAnyEvents && j == last) {
+      weights[last] += walk.remaining();
+      return;
+    }
+    weights[std::min(j, last)] += walk.step();
+  }
+}
+
 /// W_E of one yarn and channel at the incidence cosine x: weights[j] is the light that leaves after
 /// E = 2 j + 1 events, weights[0] the surface reflection r, the last one also all later events
 /// (eqs. 2 to 4, with the layers' r and t those of the first). Size: lobe_count. The sum is at
 /// most 1.
 template <class T>
-void path_weights(const BasicYarn<T>& yarn, Paths paths, const Interface<T>& interface,
+void path_weights(const BasicYarn<T>& yarn, const PathSet& paths, const Interface<T>& interface,
                   const T& absorption, std::span<T> weights) {
-  if (paths == Paths::kAll) {
+  if (paths.all()) {
     all_path_weights(yarn.layers, interface, absorption, weights);
-  } else {
-    single_path_weights(yarn.layers, interface, absorption, weights);
+    return;
+  }
+  single_path_weights(yarn.layers, interface, absorption, weights);
+  if (weights.size() == 1) return;
+  if (paths.near_sides) add_near_sides(yarn.layers, interface, absorption, weights);
+  if (paths.most_events > 0) {
+    add_interreflections(yarn.layers, interface, absorption, paths.most_events, weights);
   }
 }
 

@@ -20,12 +20,13 @@ std::vector<double> cosines(const std::vector<SinCos<double>>& angles) {
 }
 
 // The directional factor along phi_d and, in `above`, 1 above the horizon and 0 elsewhere.
-CLOTHBRDF_VECTORISE void fill_factors(Reflectance reflectance, bool folded, SinCos<double> theta_h,
-                                      SinCos<double> theta_d, const double* cos_phi_d,
-                                      std::size_t count, double* factor, double* above) {
+CLOTHBRDF_VECTORISE void fill_factors(Reflectance reflectance, bool shadowing, bool folded,
+                                      SinCos<double> theta_h, SinCos<double> theta_d,
+                                      const double* cos_phi_d, std::size_t count, double* factor,
+                                      double* above) {
   for (std::size_t k = 0; k < count; ++k) {
     const IncidenceCosines<double> c = incidence_cosines(theta_h, theta_d, cos_phi_d[k]);
-    double f = directional_factor(reflectance, theta_h.cos, theta_d.cos, c.i, c.o);
+    double f = directional_factor(reflectance, theta_h.cos, theta_d.cos, c.i, c.o, shadowing);
     if (reflectance == Reflectance::kPaper && folded) {
       f = (f + directional_factor(reflectance, theta_h.cos, theta_d.cos, c.o, c.i)) / 2;
     }
@@ -78,8 +79,8 @@ void HalfDifferencePoints::fill_row(std::size_t row, std::span<double> values) c
   std::vector<double> factor(count);
   std::vector<double> above(count);
   for (std::size_t d = 0; d < theta_d_.size(); ++d) {
-    fill_factors(model_.material().reflectance, folded_, theta_h, theta_d_[d], cos_phi_d_.data(),
-                 count, factor.data(), above.data());
+    fill_factors(model_.material().reflectance, model_.effects().shadowing, folded_, theta_h,
+                 theta_d_[d], cos_phi_d_.data(), count, factor.data(), above.data());
     for (std::size_t c = 0; c < spec_.channels.size(); ++c) {
       const Channel& channel = spec_.channels[c];
       fill_values(factor.data(), above.data(), count, sums.directional(channel, d),

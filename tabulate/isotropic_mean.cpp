@@ -66,8 +66,8 @@ void IsotropicMean::fill(std::span<const Directions> pairs, std::span<double> va
           1 / std::sqrt((sin2 * lanes_.weft()[l] + cos2) * (sin2 * lanes_.warp()[l] + cos2));
     }
     weights(std::min(g.cos_theta_d, 1.0), weight);
-    const double factor = g.h_n * directional_factor(lanes_.model().material().reflectance, g.h_n,
-                                                     g.cos_theta_d, g.cos_theta_i, g.cos_theta_o);
+    const double factor =
+        g.h_n * lanes_.model().factor(g.h_n, g.cos_theta_d, g.cos_theta_i, g.cos_theta_o);
     for (std::size_t c = 0; c < channels; ++c) {
       double sum = 0;
       for (std::size_t l = 0; l < lanes; ++l) sum += weight[c * lanes + l] * density[l];

@@ -7,21 +7,21 @@ namespace clothbrdf {
 
 LobeLanes::LobeLanes(const ClothModel<double>& model, std::vector<Channel> channels,
                      double tolerance)
-    : model_(model),
-      equal_yarns_(model.material().warp == model.material().weft),
-      channels_(std::move(channels)) {
-  for (std::size_t y = 0; y < few_.size(); ++y) {
-    const PreparedYarn<double>& yarn = model.yarns()[y];
+    : model_(model), channels_(std::move(channels)) {
+  for (const PreparedYarn<double>& yarn : model.yarns()) {
     const auto add = [&](const LobeAxes<double>& axes) {
       const double along = 1 / (axes.along * axes.along);
       const double across = 1 / (axes.across * axes.across);
-      weft_.push_back(y == 0 ? across : along);  // yarn 0 is the warp
-      warp_.push_back(y == 0 ? along : across);
+      weft_.push_back(yarn.warp ? across : along);
+      warp_.push_back(yarn.warp ? along : across);
     };
-    few_[y] =
-        y == 1 && equal_yarns_ ? few_[0] : few_lobes(yarn, model.material().reflectance, tolerance);
+    if (model.equal_yarns() && !few_.empty()) {
+      few_.push_back(few_[0]);
+    } else {
+      few_.push_back(few_lobes(yarn, model.material().reflectance, tolerance));
+    }
     add(yarn.lobes[0].axes);
-    for (const Lobe<double>& lobe : few_[y].lobes) add(lobe.axes);
+    for (const Lobe<double>& lobe : few_.back().lobes) add(lobe.axes);
   }
 }
 
@@ -32,15 +32,16 @@ void LobeLanes::weights(double cos_theta_d, std::span<double> weights) const {
   for (std::size_t y = 0; y < few_.size(); ++y) {
     const PreparedYarn<double>& yarn = model_.yarns()[y];
     const std::size_t count = 1 + few_[y].lobes.size();
-    if (y == 1 && equal_yarns_) {
+    if (y == 1 && model_.equal_yarns()) {
       scale_copy(weights, count);
       continue;
     }
-    const Interface<double> interface = fresnel(cos_theta_d, yarn.yarn.refractive_index);
+    const Interface<double> interface =
+        fresnel(model_.incidence_cosine(cos_theta_d), yarn.yarn.refractive_index);
     path.resize(yarn.lobes.size());
     few.resize(count);
     for (std::size_t colour = 0; colour < model_.channel_count(); ++colour) {
-      path_weights(yarn.yarn, model_.material().paths, interface, yarn.yarn.absorption[colour],
+      path_weights(yarn.yarn, yarn.paths, interface, yarn.yarn.absorption[colour],
                    std::span<double>(path));
       few[0] = path[0];
       few_[y].collapse(std::span(path).subspan(1), std::span(few).subspan(1));
@@ -58,7 +59,7 @@ void LobeLanes::put(std::size_t y, Part part, std::span<const double> few, doubl
   const PreparedYarn<double>& yarn = model_.yarns()[y];
   const bool specular = part == Part::kTotal || part == Part::kSpecular;
   const bool internal = part == Part::kTotal || part == Part::kInternal;
-  const double share = equal_yarns_ ? 1 : yarn.share;  // the copy takes care of it
+  const double share = model_.equal_yarns() ? 1 : yarn.share;  // the copy takes care of it
   to[0] = specular ? k.specular * share * few[0] / yarn.lobes[0].norm : 0;
   for (std::size_t l = 1; l < few.size(); ++l) {
     to[l] = internal ? k.internal * share * few[l] / few_[y].lobes[l - 1].norm : 0;
@@ -81,6 +82,10 @@ double LobeLanes::constant(std::size_t channel) const {
   return c.part == Part::kTotal || c.part == Part::kDiffuse ? model_.diffuse(c.colour) : 0;
 }
 
-double LobeLanes::error() const { return std::max(few_[0].error, few_[1].error); }
+double LobeLanes::error() const {
+  double largest = 0;
+  for (const FewLobes& few : few_) largest = std::max(largest, few.error);
+  return largest;
+}
 
 }  // namespace clothbrdf

@@ -44,9 +44,8 @@ class LobeLanes {
   void scale_copy(std::span<double> weights, std::size_t count) const;
 
   const ClothModel<double>& model_;
-  bool equal_yarns_;
   std::vector<Channel> channels_;
-  std::array<FewLobes, 2> few_;  // of each yarn
+  std::vector<FewLobes> few_;  // of each yarn
   std::vector<double> weft_;
   std::vector<double> warp_;
 };

@@ -45,14 +45,13 @@ class PathMatrix {
             std::span<double> internal) const;
 
  private:
-  std::size_t distinct_yarns() const { return equal_yarns_ ? 1 : 2; }
+  std::size_t distinct_yarns() const { return model_->equal_yarns() ? 1 : model_->yarns().size(); }
   void fill_weights(std::size_t k, double cos_theta_d);
   template <class LobeDensity>
   void fill_densities(std::span<double> density, const LobeDensity& lobe_density) const;
 
   const ClothModel<double>* model_;
   std::size_t size_;
-  bool equal_yarns_;
   std::size_t lobe_count_ = 0;
   // [k][colour][lobe]. Lobes: the surface reflection of each yarn, then the other lobes of each.
   std::vector<double> weights_;
