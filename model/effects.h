@@ -68,7 +68,10 @@ BasicMaterial<T> apply_effects(BasicMaterial<T> material, const Effects& effects
   for (BasicYarn<T>* yarn : {&material.warp, &material.weft}) {
     yarn->layers = internal ? std::min(yarn->layers, effects.layers.value_or(kMaxLayers)) : 0;
     if (!effects.scatter) yarn->scatter = T(0);
-    if (!effects.colour) {
+    const auto& colours = yarn->absorption;
+    const bool grey =
+        !kCarriesDerivative<T> && std::equal(colours.begin() + 1, colours.end(), colours.begin());
+    if (!effects.colour && !grey) {
       T sum = T(0);
       for (const T& absorption : yarn->absorption) sum += absorption;
       const T mean = sum / T(static_cast<double>(yarn->absorption.size()));

@@ -256,34 +256,33 @@ class InterreflectionWalk {
         t_(interface.transmitted),
         yarn_(passage(absorption, interface.cos_theta_t)),
         beam_(t_ * yarn_.once) {
-    for (std::size_t i = 0; i <= media_ + 1; ++i) once_up_[i] = down_[i] = up_[i] = T(0);
+    for (State& state : states_) {
+      for (std::size_t i = 0; i <= media_ + 1; ++i) {
+        state.once_up[i] = state.down[i] = state.up[i] = T(0);
+      }
+    }
   }
 
   /// One event on. Returns what left through the top.
   T step() {
-    const T left = t_ * up_[1];
-    std::array<T, kSize> once_up;
-    std::array<T, kSize> down;
-    std::array<T, kSize> up;
-    down[0] = up[media_ + 1] = once_up[media_ + 1] = T(0);
+    const State& now = states_[current_];
+    State& next = states_[1 - current_];
+    // Below the last interface nothing is reflected: next stays 0 from media_ on.
     for (std::size_t i = 1; i < media_; ++i) {
       const T met = i == beam_at_ ? beam_ : T(0);
-      once_up[i] = through(i) * (r_ * met + t_ * once_up_[i + 1]);
-      down[i] = through(i) * (t_ * down_[i - 1] + r_ * (up_[i] + once_up_[i]));
-      up[i] = through(i) * (r_ * down_[i] + t_ * up_[i + 1]);
+      next.once_up[i] = through(i) * (r_ * met + t_ * now.once_up[i + 1]);
+      next.down[i] = through(i) * (t_ * now.down[i - 1] + r_ * (now.up[i] + now.once_up[i]));
+      next.up[i] = through(i) * (r_ * now.down[i] + t_ * now.up[i + 1]);
     }
-    // Below the last interface nothing is reflected.
-    once_up[media_] = down[media_] = up[media_] = T(0);
     ++beam_at_;
     beam_ *= t_ * through(beam_at_);
-    once_up_ = once_up;
-    down_ = down;
-    up_ = up;
-    return left;
+    current_ = 1 - current_;
+    return t_ * now.up[1];
   }
 
   /// All that will still come out.
   T remaining() const {
+    const State& now = states_[current_];
     std::array<T, kSize> reflects;  // of the stack from interface i on: all walks
     std::array<T, kSize> at_once;   // those of one reflection
     std::array<T, kSize> later;     // the others
@@ -312,8 +311,8 @@ class InterreflectionWalk {
       escapes_later = crossing * (escapes_later + escapes_at_once * returns[i - 1]) / keeps[i - 1];
       escapes = crossing * escapes / keeps[i - 1];
       escapes_at_once = crossing * escapes_at_once;
-      sum += up_[i] * escapes + once_up_[i] * escapes_later +
-             down_[i] * reflects[i] * through(i) * escapes;
+      sum += now.up[i] * escapes + now.once_up[i] * escapes_later +
+             now.down[i] * reflects[i] * through(i) * escapes;
       if (i == beam_at_) {
         sum += beam_ * through(i) * (later[i] * escapes + at_once[i] * escapes_later);
       }
@@ -324,18 +323,23 @@ class InterreflectionWalk {
  private:
   static constexpr std::size_t kSize = std::size_t{2} * kMaxLayers + 2;
 
+  // Light after some events, in each medium about to meet the next interface.
+  struct State {
+    std::array<T, kSize> once_up;  // reflected once
+    std::array<T, kSize> down;     // more often
+    std::array<T, kSize> up;
+  };
+
   T through(std::size_t medium) const { return medium % 2 == 1 ? yarn_.once : T(1); }
 
   std::size_t media_;
   T r_;
   T t_;
   Passage<T> yarn_;
-  // After the same number of events, each about to meet the next interface.
   T beam_;  // never reflected
   std::size_t beam_at_ = 1;
-  std::array<T, kSize> once_up_;
-  std::array<T, kSize> down_;
-  std::array<T, kSize> up_;
+  std::array<State, 2> states_;
+  std::size_t current_ = 0;
 };
 
 /// Adds the walks of three and more reflections and at most `most_events` events.
