@@ -33,7 +33,7 @@ bool is_point(const AngleBox& box) {
 Maximum maximum(const BoxBounds& bounds, std::span<const LitBox> boxes, const Enough& enough,
                 const Workers& workers) {
   std::vector<Candidate> heap;
-  double low = 0;
+  double low = enough.reached;
   double settled = 0;  // the largest upper bound of boxes that are points
   const auto add = [&](const LitBox& lit, double at_most) {
     const Interval value = bounds(lit);
@@ -61,9 +61,11 @@ Maximum maximum(const BoxBounds& bounds, std::span<const LitBox> boxes, const En
   }
   Maximum found{{std::min(low, high()), high()}, {}};
   std::sort_heap(heap.begin(), heap.end());
-  constexpr std::size_t kBest = 16;
-  for (std::size_t k = 0; k < std::min(kBest, heap.size()); ++k)
-    found.best.push_back(heap[heap.size() - 1 - k].lit);
+  constexpr std::size_t kBest = 8;
+  for (std::size_t k = 0; k < std::min(kBest, heap.size()); ++k) {
+    const Candidate& candidate = heap[heap.size() - 1 - k];
+    found.best.push_back({candidate.high, candidate.lit});
+  }
   return found;
 }
 

@@ -21,6 +21,7 @@ using BoxBounds = std::function<Interval(const LitBox&)>;
 /// When it is enough to know that a maximum lies in a range.
 struct Enough {
   double ratio = 1.25;      ///< high over low
+  double reached = 0;       ///< a value that is known to be reached
   double negligible = 0;    ///< or high is no more than this
   double too_much = 1e300;  ///< or low is more than this
   std::size_t most_boxes = 20000;
@@ -28,8 +29,12 @@ struct Enough {
 
 /// The largest value over all boxes: proven to lie in a range.
 struct Maximum {
+  struct Start {
+    double high;
+    LitBox lit;
+  };
   Interval value;
-  std::vector<LitBox> best;  ///< boxes that may still hold it, the most promising first
+  std::vector<Start> best;  ///< some boxes that may still hold it, the most promising first
 };
 
 /// Branch and bound: the box with the largest upper bound is halved until enough is known. Stops at
