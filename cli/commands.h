@@ -25,5 +25,6 @@ void add_convert_command(CLI::App& program);
 void add_fit_command(CLI::App& program);
 void add_identify_command(CLI::App& program);
 void add_cost_command(CLI::App& program);
+void add_plan_command(CLI::App& program);
 
 }  // namespace clothbrdf

@@ -1,7 +1,6 @@
 #include "cli/cost_text.h"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -13,10 +12,6 @@ namespace clothbrdf {
 namespace {
 
 constexpr int kDigits = 3;
-
-std::string percent(double share) {
-  return std::isfinite(share) ? short_number(100 * share, kDigits) + "%" : "infinite";
-}
 
 // "1.52" or "1.52 (1.4-1.7)".
 std::string time_text(const Timing& timing) {

@@ -18,6 +18,7 @@
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "formats/material_json.h"
+#include "formats/plan_json.h"
 #include "model/reflectance.h"
 #include "support/errors.h"
 
@@ -28,6 +29,7 @@ struct EvalOptions {
   std::string material;
   std::string pairs = "-";
   std::optional<std::string> effects;
+  std::optional<std::string> plan;
 };
 
 // 17 significant digits: reads back to the same bits.
@@ -100,10 +102,29 @@ std::optional<DirectionPair> parse_pair(const std::string& line, const std::stri
   return DirectionPair{angles[0], angles[1], angles[2], angles[3]};
 }
 
+Effects planned_effects(const EvalOptions& options, const Material& material) {
+  const Plan plan = read_plan(*options.plan);
+  std::string names;
+  for (const MaterialPlan& known : plan.materials) {
+    if (known.material == material) return known.effects;
+    const std::string& name = known.material.name;
+    names += (names.empty() ? "" : ", ") + (name.empty() ? "one without a name" : name);
+  }
+  throw InputError(options.material + ": is no material of " + *options.plan +
+                   ", which plans: " + names);
+}
+
+Effects effects_of(const EvalOptions& options, const Material& material) {
+  if (options.plan && options.effects) {
+    throw InputError("--effects: not with --plan, which has its own");
+  }
+  if (options.plan) return planned_effects(options, material);
+  return options.effects ? parse_effects(*options.effects) : Effects{};
+}
+
 void eval(const EvalOptions& options) {
   const Material material = read_material(options.material);
-  const ClothModel<double> model(material,
-                                 options.effects ? parse_effects(*options.effects) : Effects{});
+  const ClothModel<double> model(material, effects_of(options, material));
   std::ifstream file;
   const bool standard_input = options.pairs == "-";
   if (!standard_input) {
@@ -148,8 +169,9 @@ void add_eval_command(CLI::App& program) {
                    "'#' starts a "
                    "comment line; - is standard input, the default")
       ->type_name("FILE");
-  add_text_option(*command, "--effects", options->effects, "LIST",
-                  "only these components, joined by ',': specular, internal, diffuse");
+  add_effects_option(*command, options->effects);
+  add_text_option(*command, "--plan", options->plan, "PLAN",
+                  "just what this plan of a scene (clothbrdf plan) keeps of the material");
   command->add_flag("--json")->description(
       "the output is always JSON; accepted so that all commands take it");
   command->callback([options] { eval(*options); });

@@ -4,15 +4,11 @@
 #include "support/errors.h"
 
 namespace clothbrdf {
-namespace {
 
-// "silk.bsdf", "_rgb": "silk_rgb.bsdf".
 std::string with_suffix(const std::string& name, const std::string& suffix) {
   const std::size_t ending = format_for(name).ending.size();
   return name.substr(0, name.size() - ending) + suffix + name.substr(name.size() - ending);
 }
-
-}  // namespace
 
 void add_file_options(CLI::App& command, FileOptions& options) {
   command.add_flag("--half", options.half,

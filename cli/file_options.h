@@ -20,6 +20,9 @@ struct FileOptions {
 /// Adds them to a command. `options` must live as long as it does.
 void add_file_options(CLI::App& command, FileOptions& options);
 
+/// "silk.bsdf" with "_rgb": "silk_rgb.bsdf". Throws InputError for an ending that is no table's.
+std::string with_suffix(const std::string& name, const std::string& suffix);
+
 /// A file to write, and how.
 struct FileToWrite {
   std::string name;

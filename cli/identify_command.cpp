@@ -90,6 +90,16 @@ void check_outputs(const IdentifyCommandOptions& options) {
   check_output_names(outputs, {options.file});
 }
 
+// What a fit finds is a cloth with all effects: a table without some would be fitted with them.
+Effects parse_components(const std::string& list) {
+  const Effects effects = parse_effects(list);
+  if (const std::vector<std::string> words = shortcut_words(effects); !words.empty()) {
+    throw InputError("--effects: '" + words.front() +
+                     "' is not allowed: components only, specular, internal and diffuse");
+  }
+  return effects;
+}
+
 Subject material_subject(const IdentifyCommandOptions& options) {
   if (std::filesystem::path(options.file).extension() != ".json") {
     throw InputError(
@@ -100,7 +110,7 @@ Subject material_subject(const IdentifyCommandOptions& options) {
   // The paper's f_r is not reciprocal: its tables go once around.
   const double phi_d_range = material.reflectance == Reflectance::kPaper ? 360 : 180;
   const Grid grid = parse_grid(options.grid.value_or(kDefaultGrid), phi_d_range);
-  const Effects effects = options.effects ? parse_effects(*options.effects) : Effects{};
+  const Effects effects = options.effects ? parse_components(*options.effects) : Effects{};
   const CellRule cells = parse_cells(options.cells.value_or("point"));
   Subject subject{material_spec(material, effects, grid, cells), material, {}, {}, ""};
   check_producible(subject.spec);

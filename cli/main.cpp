@@ -83,6 +83,7 @@ int run(int argc, char** argv) {
   clothbrdf::add_fit_command(program);
   clothbrdf::add_identify_command(program);
   clothbrdf::add_cost_command(program);
+  clothbrdf::add_plan_command(program);
 
   try {
     program.parse(argc, argv);

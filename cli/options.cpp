@@ -22,6 +22,18 @@ Effects parse_effects(const std::string& list) {
   return *effects;
 }
 
+void add_effects_option(CLI::App& command, std::optional<std::string>& value,
+                        const std::string& of) {
+  add_text_option(
+      command, "--effects", value, "LIST",
+      "parts of the model" + (of.empty() ? of : " " + of) +
+          ", joined by ',': specular, internal[:LAYERS], diffuse (naming any turns the unnamed "
+          "ones "
+          "off); interreflection:EVENTS; no-NAME leaves out one of near_side, interreflection, "
+          "scatter, colour, second_yarn, anisotropy, shadowing; no-fresnel_angle=COSINE; all where "
+          "left out");
+}
+
 CellRule parse_cells(const std::string& text) {
   if (text == "point") return {};
   CellRule rule{.average = true};

@@ -20,6 +20,11 @@ namespace clothbrdf {
 /// "specular,no-scatter": effects from words joined by ',' (model/effects.h).
 Effects parse_effects(const std::string& list);
 
+/// --effects, whose text is for parse_effects; `of` says of what: "of materials". `value` must live
+/// as long as the command.
+void add_effects_option(CLI::App& command, std::optional<std::string>& value,
+                        const std::string& of = "");
+
 /// "point", "average" or "average:REL".
 CellRule parse_cells(const std::string& text);
 

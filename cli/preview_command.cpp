@@ -29,6 +29,7 @@ struct PreviewOptions {
   std::string show = "sheet";
   std::optional<std::string> light;
   std::optional<std::string> eye;
+  std::optional<std::string> effects;
   std::string size = "256";
   std::string exposure = "0";
   std::optional<std::string> threads;
@@ -79,13 +80,13 @@ struct Source {
   std::unique_ptr<Cloth> cloth;
 };
 
-Source read_source(const std::string& file, const Workers& workers) {
+Source read_source(const std::string& file, const Effects& effects, const Workers& workers) {
   const std::string stem = std::filesystem::path(file).stem().string();
   if (const Format* format = find_format(file)) {
     return {file, stem, table_cloth(format->read(file), file)};
   }
   if (std::filesystem::path(file).extension() == ".json") {
-    return {file, stem, material_cloth(read_material(file), file, workers)};
+    return {file, stem, material_cloth(read_material(file), file, workers, effects)};
   }
   throw InputError(file + ": the ending '" + std::filesystem::path(file).extension().string() +
                    "' is not that of a table or a material; known: " + table_endings() +
@@ -140,8 +141,19 @@ void check_outputs(const PreviewOptions& options) {
   }
 }
 
+// Beside tables they may be given: those of the materials.
+Effects effects_of(const PreviewOptions& options) {
+  if (!options.effects) return {};
+  const auto is_table = [](const std::string& file) { return find_format(file) != nullptr; };
+  if (std::all_of(options.files.begin(), options.files.end(), is_table)) {
+    throw InputError("--effects: not with tables alone, which have theirs");
+  }
+  return parse_effects(*options.effects);
+}
+
 void preview(const PreviewOptions& options) {
   const Show& show = parse_show(options.show);
+  const Effects effects = effects_of(options);
   SheetView sheet;
   sheet.light = parse_direction("--light", options.light.value_or("0,0"));
   sheet.eye = parse_direction("--eye", options.eye.value_or("0,0"));
@@ -155,7 +167,7 @@ void preview(const PreviewOptions& options) {
   const Workers workers{threads, &bar.progress()};
   std::vector<Source> sources;
   for (const std::string& file : options.files) {
-    sources.push_back(read_source(file, workers));
+    sources.push_back(read_source(file, effects, workers));
     check_shown(sources.back(), show);
   }
   std::vector<AtomicFile> files;
@@ -212,6 +224,7 @@ void add_preview_command(CLI::App& program) {
       "30 where left out");
   add_text_option(*command, "--eye", options->eye, "THETA,PHI",
                   "direction to the eye, degrees; 0,0 (straight above) where left out");
+  add_effects_option(*command, options->effects, "(of materials)");
   option("--size", options->size, "PIXELS", "edge of a panel, 16 to 4096; 256 where left out");
   option("--exposure", options->exposure, "STOPS",
          "brighter by 2^STOPS; at 0, the default, a white diffuse sheet facing the light is white");

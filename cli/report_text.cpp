@@ -1,6 +1,7 @@
 #include "cli/report_text.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iomanip>
 #include <sstream>
 
@@ -38,6 +39,11 @@ std::string short_number(double value, int digits) {
 
 std::string short_number(const std::optional<double>& value, int digits) {
   return value ? short_number(*value, digits) : "-";
+}
+
+std::string percent(double share) {
+  constexpr int kDigits = 3;
+  return std::isfinite(share) ? short_number(100 * share, kDigits) + "%" : "infinite";
 }
 
 std::string with_unit(const std::string& text, const std::string& unit) {

@@ -16,6 +16,9 @@ std::string short_number(double value, int digits = 4);
 /// The same; "-" where there is none.
 std::string short_number(const std::optional<double>& value, int digits = 4);
 
+/// "0.42%", three digits; "infinite".
+std::string percent(double share);
+
 /// "0.06 deg"; the unit 1 is left out.
 std::string with_unit(const std::string& text, const std::string& unit);
 

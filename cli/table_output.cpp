@@ -8,6 +8,7 @@
 
 #include "cli/measured_error.h"
 #include "cli/options.h"
+#include "cli/plan_text.h"
 #include "formats/format_colours.h"
 
 namespace clothbrdf {
@@ -40,6 +41,11 @@ void report_json(const TableOutput& output, const Json& cost) {
                {"cells", layout.cells},
                {"channels", output.spec.channels.size()}};
   line.update(cost);
+  if (output.plan) {
+    line["material"] = output.plan->material.name;
+    line["effects"] = effect_words(output.plan->effects);
+    line["bound"] = output.plan->bound;
+  }
   if (!output.note.empty()) line["note"] = output.note;
   std::cout << line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
 }
@@ -67,6 +73,9 @@ void describe(TableOutput& output) {
   const TableSpec computed = computed_spec(order, output.setting);
   output.spec = in_colours_of(*order.format, computed, output.setting.options);
   output.note = what_is_lost(order.material, computed, output.spec, *order.format);
+  if (!output.plan) return;
+  const std::string left_out = left_out_text(*output.plan);
+  output.note += (output.note.empty() || left_out.empty() ? "" : "; ") + left_out;
 }
 
 void report_written(const TableOutput& output, std::uint64_t bytes, double seconds, bool as_json) {

@@ -6,6 +6,7 @@
 
 #include "cost/dry_run.h"
 #include "cost/verified.h"
+#include "scene/plan.h"
 
 namespace clothbrdf {
 
@@ -16,6 +17,7 @@ struct TableOutput {
   TableSpec spec;    // in the file's colours
   std::string note;  // what this file cannot hold of the material
   std::optional<MeasuredError> error;
+  std::optional<MaterialPlan> plan;  // of a scene's cloth: what is left out of the table
 
   std::filesystem::path path() const { return order.name; }
 };

@@ -7,15 +7,17 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "cli/commands.h"
 #include "cli/file_options.h"
 #include "cli/options.h"
 #include "cli/progress_bar.h"
+#include "cli/scene_tables.h"
 #include "cli/table_output.h"
 #include "cost/verified.h"
-#include "formats/material_json.h"
+#include "formats/scene_json.h"
 #include "support/errors.h"
 
 namespace clothbrdf {
@@ -64,25 +66,84 @@ std::optional<Target> target_of(const TabulateOptions& options) {
   return target;
 }
 
-TableOutput plan_output(const TabulateOptions& options, const Material& material,
+// Without anisotropy the mean over rotations loses nothing: it is taken wherever the format can
+// hold it and nothing else is asked for.
+Samples samples_of(const TabulateOptions& options, const FileOrder& order) {
+  const Reflectance reflectance = order.material.reflectance;
+  if (options.grid) {
+    const bool once_around = reflectance == Reflectance::kPaper && order.format->keeps_description;
+    return parse_grid(*options.grid, once_around ? 360 : 180);
+  }
+  return order.format->default_samples(reflectance, order.isotropic);
+}
+
+TableOutput make_output(const TabulateOptions& options, const ClothTables& cloth,
                         const FileToWrite& file) {
   const Format& format = format_for(file.name);
-  Samples samples = format.default_samples(material.reflectance, options.isotropic);
-  if (options.grid) {
-    const bool once_around =
-        material.reflectance == Reflectance::kPaper && format.keeps_description;
-    samples = parse_grid(*options.grid, once_around ? 360 : 180);
+  TableOutput output;
+  // The reach of a scene's table, which is its plan's, belongs into this order.
+  output.order = {
+      cloth.material,     cloth.effects,
+      options.components, &format,
+      file.options,       options.isotropic || (!cloth.effects.anisotropy && !options.grid),
+      file.name};
+  output.plan = cloth.plan;
+  const auto set = [&] {
+    output.setting = {samples_of(options, output.order),
+                      parse_cells(options.cells.value_or("point")), file.options};
+  };
+  set();
+  if (output.order.isotropic && !options.isotropic && !is_allowed(output.order, output.setting)) {
+    output.order.isotropic = false;
+    set();
   }
-  const Effects effects = options.effects ? parse_effects(*options.effects) : Effects{};
-  TableOutput output{
-      {material, effects, options.components, &format, file.options, options.isotropic, file.name},
-      {std::move(samples), parse_cells(options.cells.value_or("point")), file.options},
-      {},
-      {},
-      {}};
   check_setting(output.order, output.setting);
   describe(output);
   return output;
+}
+
+// By cloth, then by name. Also checks all that can be wrong with them before any work.
+std::vector<TableOutput> make_outputs(const TabulateOptions& options,
+                                      const std::vector<ClothTables>& cloths) {
+  std::vector<TableOutput> outputs;
+  for (const ClothTables& cloth : cloths) {
+    for (const std::string& name : cloth.names) {
+      for (const FileToWrite& file : files_to_write(name, options.files)) {
+        if (std::any_of(outputs.begin(), outputs.end(), [&](const TableOutput& other) {
+              return same_file(other.path(), file.name);
+            })) {
+          throw InputError("--output: " + file.name + " is given twice");
+        }
+        outputs.push_back(make_output(options, cloth, file));
+      }
+    }
+  }
+  return outputs;
+}
+
+std::vector<ClothTables> material_tables(const TabulateOptions& options, const Material& material) {
+  if (options.outputs.empty()) {
+    throw InputError("--output is required; see clothbrdf tabulate --help");
+  }
+  const Effects effects = options.effects ? parse_effects(*options.effects) : Effects{};
+  return {{material, effects, options.outputs, {}}};
+}
+
+std::vector<ClothTables> unplanned_tables(const TabulateOptions& options, const Scene& scene) {
+  const auto refuse = [](const std::optional<std::string>& value, const std::string& option,
+                         const std::string& why) {
+    if (value) throw InputError(option + ": not with a scene, " + why);
+  };
+  refuse(options.effects, "--effects", "whose plan chooses the effects");
+  refuse(options.tolerance, "--tolerance", "which has its own");
+  refuse(options.metric, "--metric", "whose tolerance is a share of its brightest");
+  check_scene(scene, options.material);
+  const std::vector<std::string>& names = options.outputs.empty() ? scene.outputs : options.outputs;
+  if (names.empty()) {
+    throw InputError(options.material +
+                     ": /output: missing, needed is the name of a table, or the option -o");
+  }
+  return scene_tables(scene, names);
 }
 
 // With a target the file is written once to be measured, and once more with the result in it.
@@ -106,20 +167,14 @@ std::string what_stays(std::span<const TableOutput> unwritten) {
 }
 
 void tabulate(const TabulateOptions& options) {
-  const Material material = read_material(options.material);
   const int threads = threads_of(options.threads);
+  const std::variant<Material, Scene> input = read_material_or_scene(options.material);
+  const Scene* scene = std::get_if<Scene>(&input);
+  std::vector<ClothTables> cloths = scene != nullptr
+                                        ? unplanned_tables(options, *scene)
+                                        : material_tables(options, std::get<Material>(input));
   const std::optional<Target> target = target_of(options);
-  std::vector<TableOutput> outputs;
-  for (const std::string& name : options.outputs) {
-    for (const FileToWrite& file : files_to_write(name, options.files)) {
-      if (std::any_of(outputs.begin(), outputs.end(), [&](const TableOutput& other) {
-            return same_file(other.path(), file.name);
-          })) {
-        throw InputError("--output: " + file.name + " is given twice");
-      }
-      outputs.push_back(plan_output(options, material, file));
-    }
-  }
+  std::vector<TableOutput> outputs = make_outputs(options, cloths);
 
   ProgressBar bar;
   const Workers workers(threads, &bar.progress());
@@ -127,6 +182,10 @@ void tabulate(const TabulateOptions& options) {
   std::vector<AtomicFile> files;
   files.reserve(outputs.size());
   for (const TableOutput& output : outputs) files.emplace_back(output.path());
+  if (scene != nullptr) {
+    plan_tables(*scene, cloths, workers);
+    outputs = make_outputs(options, cloths);
+  }
   std::size_t next = 0;
   try {
     for (; next < outputs.size(); ++next) {
@@ -159,16 +218,19 @@ void add_tabulate_command(CLI::App& program) {
   CLI::App* command = program.add_subcommand(
       "tabulate",
       "Writes the cloth's f_r as tables that other programs read; the format follows the file's "
-      "ending.\n"
+      "ending. Of a scene, what its tolerance allows to leave out is left out.\n"
       "Example: clothbrdf tabulate materials/silk.json -o silk.binary -o silk.exr");
   std::string known;
   for (const Format& f : formats())
     known += (known.empty() ? "" : "; ") + std::string(f.ending) + ": " + std::string(f.summary);
-  command->add_option("MATERIAL", options->material, "material file (JSON)")
+  command->add_option("MATERIAL", options->material, "material file or scene file (JSON)")
       ->required()
       ->type_name("FILE");
-  command->add_option("-o,--output", options->outputs, "table to write, repeatable (" + known + ")")
-      ->required()
+  command
+      ->add_option("-o,--output", options->outputs,
+                   "table to write, repeatable (" + known +
+                       "); of a scene with several materials one each, with the material's name "
+                       "before the ending; the scene's own output where left out")
       ->type_name("FILE")
       ->allow_extra_args(false);  // what follows the name may be the material
   add_text_option(
@@ -179,8 +241,7 @@ void add_tabulate_command(CLI::App& program) {
                   "value of a cell: point (f_r at its node, the default) or average[:REL] (mean "
                   "over the cell above the horizon, to the relative tolerance REL, 1e-3 where left "
                   "out)");
-  add_text_option(*command, "--effects", options->effects, "LIST",
-                  "only these components, joined by ',': specular, internal, diffuse");
+  add_effects_option(*command, options->effects);
   command->add_flag("--components", options->components,
                     "also layers specular.*, internal.*, diffuse.* (EXR)");
   command->add_flag("--isotropic", options->isotropic,

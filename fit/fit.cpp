@@ -16,6 +16,7 @@
 #include "fit/search.h"
 #include "fit/settle.h"
 #include "fit/table_values.h"
+#include "model/effects.h"
 #include "support/errors.h"
 #include "support/threads.h"
 
@@ -265,6 +266,14 @@ class TableFit {
     }
     if (!chosen.fit.settled) {
       report_.notes.push_back("the weights, which come from the fit, had not settled at the end");
+    }
+    std::string shortcuts;
+    for (const std::string& word : shortcut_words(table_.spec().provenance.effects)) {
+      shortcuts += (shortcuts.empty() ? "" : ", ") + word;
+    }
+    if (!shortcuts.empty()) {
+      report_.notes.push_back("the table was made with " + shortcuts +
+                              "; the fit has the effects that these leave out");
     }
     constexpr double kFar = 0.5;
     if (options_.weighting != Weighting::kAbsolute && report_.residual_rms > kFar) {

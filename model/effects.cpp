@@ -1,5 +1,6 @@
 #include "model/effects.h"
 
+#include <algorithm>
 #include <charconv>
 #include <utility>
 
@@ -150,6 +151,17 @@ std::vector<std::string> effect_words(const Effects& effects) {
   if (effects.cos_theta_d) {
     words.push_back("no-fresnel_angle=" + number_text(*effects.cos_theta_d));
   }
+  return words;
+}
+
+std::vector<std::string> shortcut_words(const Effects& effects) {
+  Effects components;
+  for (const auto& [name, member] : kComponentEffects) components.*member = effects.*member;
+  const std::vector<std::string> plain = effect_words(components);
+  std::vector<std::string> words = effect_words(effects);
+  std::erase_if(words, [&](const std::string& word) {
+    return std::find(plain.begin(), plain.end(), word) != plain.end();
+  });
   return words;
 }
 

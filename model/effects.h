@@ -51,6 +51,9 @@ inline constexpr std::pair<std::string_view, bool Effects::*> kOtherEffects[] = 
 /// "no-scatter", "no-fresnel_angle=0.8". All components that are on are named; none else that is.
 std::vector<std::string> effect_words(const Effects& effects);
 
+/// Those of the words that stand for more than which components are on: "internal:4", "no-scatter".
+std::vector<std::string> shortcut_words(const Effects& effects);
+
 /// Effects from words. Components (specular, internal[:N], diffuse): naming any turns the unnamed
 /// ones off. All else is on unless written no-NAME. On failure none, and `problem` says what is
 /// wrong and what is allowed.

@@ -36,8 +36,8 @@ std::vector<double> channel_values(const BatchEvaluator<double>& evaluator, std:
 
 class MaterialCloth final : public Cloth {
  public:
-  MaterialCloth(const Material& material, const Workers& workers)
-      : model_(std::make_shared<const ClothModel<double>>(material)), workers_(workers) {}
+  MaterialCloth(const Material& material, const Effects& effects, const Workers& workers)
+      : model_(std::make_shared<const ClothModel<double>>(material, effects)), workers_(workers) {}
 
   bool has(Part /*all of them*/) const override { return true; }
 
@@ -118,12 +118,12 @@ class TableCloth final : public Cloth {
 }  // namespace
 
 std::unique_ptr<Cloth> material_cloth(const Material& material, const std::string& name,
-                                      const Workers& workers) {
+                                      const Workers& workers, const Effects& effects) {
   if (material.wavelengths_nm.empty() && material.channel_count() != 3) {
     throw InputError(name + ": absorption has " + std::to_string(material.channel_count()) +
                      " values; a picture needs R, G and B, or wavelengths_nm");
   }
-  return std::make_unique<MaterialCloth>(material, workers);
+  return std::make_unique<MaterialCloth>(material, effects, workers);
 }
 
 std::unique_ptr<Cloth> table_cloth(Table table, const std::string& name) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "model/effects.h"
 #include "model/material.h"
 #include "support/image.h"
 #include "support/progress.h"
@@ -46,11 +47,11 @@ class Cloth {
   virtual Shading shading(Part part) const = 0;
 };
 
-/// Evaluated as the model does, to rounding; a material of wavelengths then by rgb_weights. Throws
-/// InputError, starting with `name`, for a material of other channels than R, G and B or
-/// wavelengths.
+/// Evaluated as the model does with these effects, to rounding; a material of wavelengths then by
+/// rgb_weights. Throws InputError, starting with `name`, for a material of other channels than R, G
+/// and B or wavelengths.
 std::unique_ptr<Cloth> material_cloth(const Material& material, const std::string& name,
-                                      const Workers& workers = 1);
+                                      const Workers& workers = 1, const Effects& effects = {});
 
 /// Interpolated between the table's nodes (Table::interpolate). Throws InputError, starting with
 /// `name`, where the table has no channels R, G and B or does not answer
