@@ -27,11 +27,12 @@ struct Block {
   HWY_ALIGN T weft2[kBlock];  // the half vector's squared components
   HWY_ALIGN T warp2[kBlock];
   HWY_ALIGN T normal2[kBlock];
-  HWY_ALIGN T place[kBlock];   // in the piece, -1 to 1
+  HWY_ALIGN T place[kBlock];   // in the piece, -1 to 1; of surfaces cos_theta_d
   HWY_ALIGN T factor[kBlock];  // directional factor times h_n, 0 below the horizon
   HWY_ALIGN T above[kBlock];   // 1, or 0 below the horizon
   HWY_ALIGN hwy::MakeUnsigned<T> piece[kBlock];
-  HWY_ALIGN T sum[3][kBlock];  // over the lanes, of the channels at work
+  HWY_ALIGN T sum[3][kBlock];  // over the lanes, of the sums at work
+  HWY_ALIGN T none[kBlock];    // sums of channels without direction: 0
 };
 
 /// What the lanes of kBlock pairs share: lanes over pairs.
@@ -68,7 +69,9 @@ void prepare(const BatchPlan<T>& plan, const DirectionArrays<T>& in, Block<T>& b
     const auto warp = hn::Mul(hn::NegMulAdd(h_x, turn_sin, hn::Mul(h_y, turn_cos)), inverse);
     const auto normal = hn::Mul(h_z, inverse);
     auto factor = normal;
-    if (plan.microfacet) {
+    if (plan.microfacet && !plan.shadowing) {
+      factor = hn::Mul(hn::Div(factor, low), hn::Div(hn::Set(d, T(0.25)), high));
+    } else if (plan.microfacet) {
       // min(1 / (2 low), h_n / x) / (2 high), model.md section 7; h_n / x = 2 h_z / length^2.
       const auto unshadowed = hn::Div(half, low);
       const auto shadowed = hn::Mul(hn::Add(normal, normal), inverse);
@@ -76,49 +79,66 @@ void prepare(const BatchPlan<T>& plan, const DirectionArrays<T>& in, Block<T>& b
     } else {
       factor = hn::Div(factor, wi_z);
     }
+    hn::Store(hn::Mul(weft, weft), d, block.weft2 + p);
+    hn::Store(hn::Mul(warp, warp), d, block.warp2 + p);
+    // Below the horizon nothing may overflow: a factor of 0 takes it away.
+    hn::Store(hn::IfThenElse(above, hn::Mul(normal, normal), one), d, block.normal2 + p);
+    hn::Store(hn::IfThenElseZero(above, factor), d, block.factor + p);
+    hn::Store(hn::IfThenElseZero(above, one), d, block.above + p);
+    if (plan.kind != BatchSum::kTable) {
+      hn::Store(hn::IfThenElse(above, x, one), d, block.place + p);
+      continue;
+    }
     const auto y = hn::Add(x, hn::Set(d, static_cast<T>(kWeightShift)));
     const auto bits = hn::BitCast(du, y);
     // Bits of the place in the piece, as a number from 1 to 2: exponent 0 over them.
     const auto in_piece = hn::ShiftLeftSame(hn::And(bits, mantissa), plan.piece_bits);
     const auto from_one = hn::BitCast(d, hn::Or(in_piece, hn::BitCast(du, one)));
-    hn::Store(hn::Mul(weft, weft), d, block.weft2 + p);
-    hn::Store(hn::Mul(warp, warp), d, block.warp2 + p);
-    // Below the horizon nothing may overflow: a factor of 0 takes it away.
-    hn::Store(hn::IfThenElse(above, hn::Mul(normal, normal), one), d, block.normal2 + p);
     hn::Store(hn::MulAdd(hn::Set(d, T(2)), from_one, hn::Set(d, T(-3))), d, block.place + p);
-    hn::Store(hn::IfThenElseZero(above, factor), d, block.factor + p);
-    hn::Store(hn::IfThenElseZero(above, one), d, block.above + p);
     hn::Store(hn::Sub(hn::ShiftRightSame(bits, shift), first_piece), du, block.piece + p);
   }
 }
 
-/// The sums over lanes for `count` pairs and kChannels channels from `channel` on: lanes over
-/// lobes.
-template <std::size_t kChannels, class T>
-void sum_lanes(const BatchPlan<T>& plan, std::size_t channel, std::size_t count, Block<T>& block) {
+/// 1 over the size of a lane's solid in the direction of the half vector; kMean: the mean over its
+/// azimuth, of h's squared components across the normal together.
+template <bool kMean, class D, class V>
+V lane_density(D d, V weft, V warp, V weft2, V warp2, V normal2) {
+  const auto one = hn::Set(d, static_cast<hn::TFromD<D>>(1));
+  if constexpr (kMean) {
+    const auto across2 = hn::Add(weft2, warp2);
+    return hn::Div(one, hn::Sqrt(hn::Mul(hn::MulAdd(weft, across2, normal2),
+                                         hn::MulAdd(warp, across2, normal2))));
+  } else {
+    return hn::Div(one, hn::MulAdd(weft, weft2, hn::MulAdd(warp, warp2, normal2)));
+  }
+}
+
+/// The sums over lanes for `count` pairs and kSums sums from `first` on, by polynomials of a
+/// degree: lanes over lobes.
+template <std::size_t kSums, int kDegree, bool kMean, class T>
+void sum_lanes(const BatchPlan<T>& plan, std::size_t first, std::size_t count, Block<T>& block) {
   // Of 256 bits at most: adding up the lanes of wider ones costs more than they save.
   const hn::CappedTag<T, 32 / sizeof(T)> d;
   const std::size_t n = hn::Lanes(d);
-  constexpr std::size_t kPowers = kWeightDegree<T> + 1;
+  constexpr std::size_t kPowers = kDegree + 1;
   const std::size_t lanes = plan.lanes;
   const T* const weft = plan.weft;
   const T* const warp = plan.warp;
-  const std::size_t row_size = plan.channels * kPowers * lanes;
-  const T* const first_row = plan.coefficients + channel * kPowers * lanes;
-  const auto one = hn::Set(d, T(1));
+  const std::size_t row_size = plan.sums * kPowers * lanes;
+  const T* const first_row = plan.coefficients + first * kPowers * lanes;
   for (std::size_t p = 0; p < count; ++p) {
     const auto weft2 = hn::Set(d, block.weft2[p]);
     const auto warp2 = hn::Set(d, block.warp2[p]);
     const auto normal2 = hn::Set(d, block.normal2[p]);
     const auto place = hn::Set(d, block.place[p]);
-    const T* const row = first_row + static_cast<std::size_t>(block.piece[p]) * row_size;
-    hn::Vec<decltype(d)> sum[kChannels];
+    const T* const row =
+        kDegree == 0 ? first_row : first_row + static_cast<std::size_t>(block.piece[p]) * row_size;
+    hn::Vec<decltype(d)> sum[kSums];
     for (auto& s : sum) s = hn::Zero(d);
     for (std::size_t lane = 0; lane < lanes; lane += n) {
-      const auto size = hn::MulAdd(hn::Load(d, weft + lane), weft2,
-                                   hn::MulAdd(hn::Load(d, warp + lane), warp2, normal2));
-      const auto density = hn::Div(one, size);
-      for (std::size_t c = 0; c < kChannels; ++c) {
+      const auto density = lane_density<kMean>(d, hn::Load(d, weft + lane),
+                                               hn::Load(d, warp + lane), weft2, warp2, normal2);
+      for (std::size_t c = 0; c < kSums; ++c) {
         const T* const power = row + c * kPowers * lanes + lane;
         auto weight = hn::Load(d, power + (kPowers - 1) * lanes);
         for (std::size_t k = kPowers - 1; k-- > 0;) {
@@ -127,10 +147,80 @@ void sum_lanes(const BatchPlan<T>& plan, std::size_t channel, std::size_t count,
         sum[c] = hn::MulAdd(weight, density, sum[c]);
       }
     }
-    for (std::size_t c = 0; c < kChannels; ++c) {
+    for (std::size_t c = 0; c < kSums; ++c) {
       block.sum[c][p] = hn::GetLane(hn::SumOfLanes(d, sum[c]));
     }
   }
+}
+
+/// A vector register as a scalar of the model.
+template <class D>
+struct Lanes {
+  hn::Vec<D> v;
+
+  explicit Lanes(hn::Vec<D> of) : v(of) {}
+  explicit Lanes(int all) : v(hn::Set(D(), static_cast<hn::TFromD<D>>(all))) {}
+  friend Lanes operator+(Lanes a, Lanes b) { return Lanes(hn::Add(a.v, b.v)); }
+  friend Lanes operator-(Lanes a, Lanes b) { return Lanes(hn::Sub(a.v, b.v)); }
+  friend Lanes operator*(Lanes a, Lanes b) { return Lanes(hn::Mul(a.v, b.v)); }
+  friend Lanes operator/(Lanes a, Lanes b) { return Lanes(hn::Div(a.v, b.v)); }
+  friend Lanes sqrt(Lanes a) { return Lanes(hn::Sqrt(a.v)); }
+};
+
+/// The sum over surface reflections: lanes over pairs, no table.
+template <bool kMean, class T>
+void sum_surfaces(const BatchPlan<T>& plan, Block<T>& block) {
+  const hn::ScalableTag<T> d;
+  const std::size_t n = hn::Lanes(d);
+  using V = Lanes<hn::ScalableTag<T>>;
+  for (std::size_t p = 0; p < kBlock; p += n) {
+    const auto load = [&](const T* from) { return hn::Load(d, from + p); };
+    const V x(load(block.place));
+    auto sum = hn::Zero(d);
+    for (std::size_t lane = 0; lane < plan.lanes; ++lane) {
+      const auto density =
+          lane_density<kMean>(d, hn::Set(d, plan.weft[lane]), hn::Set(d, plan.warp[lane]),
+                              load(block.weft2), load(block.warp2), load(block.normal2));
+      const V reflected = fresnel_reflected(x, V(hn::Set(d, plan.steepness[lane])));
+      sum = hn::MulAdd(hn::Mul(reflected.v, hn::Set(d, plan.coefficients[lane])), density, sum);
+    }
+    hn::Store(sum, d, block.sum[0] + p);
+  }
+}
+
+/// Three sums from `first` on where there are as many, else one. Returns how many.
+template <int kDegree, bool kMean, class T>
+std::size_t sum_some_lanes(const BatchPlan<T>& plan, std::size_t first, std::size_t count,
+                           Block<T>& block) {
+  if (first + 3 <= plan.sums) {
+    sum_lanes<3, kDegree, kMean>(plan, first, count, block);
+    return 3;
+  }
+  sum_lanes<1, kDegree, kMean>(plan, first, count, block);
+  return 1;
+}
+
+template <class T>
+std::size_t sum_some(const BatchPlan<T>& plan, std::size_t first, std::size_t count,
+                     Block<T>& block) {
+  constexpr int kDegree = kWeightDegree<T>;
+  switch (plan.kind) {
+    case BatchSum::kNone: break;
+    case BatchSum::kSurface:
+      if (plan.mean) {
+        sum_surfaces<true>(plan, block);
+      } else {
+        sum_surfaces<false>(plan, block);
+      }
+      return 1;
+    case BatchSum::kFixed:
+      return plan.mean ? sum_some_lanes<0, true>(plan, first, count, block)
+                       : sum_some_lanes<0, false>(plan, first, count, block);
+    case BatchSum::kTable:
+      return plan.mean ? sum_some_lanes<kDegree, true>(plan, first, count, block)
+                       : sum_some_lanes<kDegree, false>(plan, first, count, block);
+  }
+  return 0;
 }
 
 /// What is left to do for one channel: lanes over pairs.
@@ -148,6 +238,30 @@ void finish(const Block<T>& block, const T* sum, T constant, std::size_t count, 
   HWY_ALIGN T rest[HWY_MAX_BYTES / sizeof(T)];
   hn::Store(value(p), d, rest);
   std::copy_n(rest, count - p, values + p);
+}
+
+/// Constants where both directions are above the horizon, 0 elsewhere: lanes over pairs.
+template <class T>
+void fill_constants(const BatchPlan<T>& plan, const DirectionArrays<T>& in, T* const* values) {
+  const hn::ScalableTag<T> d;
+  const std::size_t n = hn::Lanes(d);
+  const auto above = [&](const T* wi_z, const T* wo_z) {
+    return hn::Gt(hn::Min(hn::LoadU(d, wi_z), hn::LoadU(d, wo_z)), hn::Zero(d));
+  };
+  std::size_t p = 0;
+  for (; p + n <= in.count; p += n) {
+    const auto visible = above(in.wi[2] + p, in.wo[2] + p);
+    for (const BatchOutput<T>& output : plan.outputs) {
+      hn::StoreU(hn::IfThenElseZero(visible, hn::Set(d, output.constant)), d,
+                 values[output.channel] + p);
+    }
+  }
+  for (; p < in.count; ++p) {
+    const bool visible = in.wi[2][p] > T(0) && in.wo[2][p] > T(0);
+    for (const BatchOutput<T>& output : plan.outputs) {
+      values[output.channel][p] = visible ? output.constant : T(0);
+    }
+  }
 }
 
 /// The pairs from `first` on, kBlock of them; after the last one directions on the horizon.
@@ -175,22 +289,27 @@ class Window {
 
 template <class T>
 void run(const BatchPlan<T>& plan, const DirectionArrays<T>& in, T* const* values) {
+  if (plan.kind == BatchSum::kNone) {
+    fill_constants(plan, in, values);
+    return;
+  }
   Block<T> block{};
   Window<T> window;
   for (std::size_t first = 0; first < in.count; first += kBlock) {
     const DirectionArrays<T> now = window.at(in, first);
     prepare(plan, now, block);
-    std::size_t channel = 0;
-    while (channel < plan.channels) {
-      const bool three = channel + 3 <= plan.channels;
-      if (three) {
-        sum_lanes<3>(plan, channel, now.count, block);
-      } else {
-        sum_lanes<1>(plan, channel, now.count, block);
+    auto output = plan.outputs.begin();
+    const auto write = [&](const T* sum) {
+      finish(block, sum, output->constant, now.count, values[output->channel] + first);
+      ++output;
+    };
+    while (output != plan.outputs.end() && !output->directional) write(block.none);
+    for (std::size_t sum = 0; sum < plan.sums;) {
+      const std::size_t count = sum_some(plan, sum, now.count, block);
+      while (output != plan.outputs.end() && output->sum < sum + count) {
+        write(block.sum[output->sum - sum]);
       }
-      for (std::size_t c = 0; c < (three ? 3U : 1U); ++c, ++channel) {
-        finish(block, block.sum[c], plan.constants[channel], now.count, values[channel] + first);
-      }
+      sum += count;
     }
   }
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+
 #include "tabulate/batch.h"
 
 namespace clothbrdf {
@@ -9,16 +11,20 @@ namespace clothbrdf {
 /// All that its inner loops need.
 template <class T>
 struct BatchPlan {
+  BatchSum kind;
+  bool mean;      ///< densities are means over the azimuth of the half vector
   const T* weft;  ///< [lane]
   const T* warp;
-  const T* coefficients;  ///< as WeightTable
+  const T* coefficients;  ///< as WeightTable; kFixed: [sum][lane]; kSurface: [lane]
+  const T* steepness;     ///< kSurface: (n - 1) (n + 1) of the refractive index, [lane]
   std::size_t lanes;
-  std::size_t channels;
+  std::size_t sums;  ///< different sums over lanes
   int piece_bits;
   T turn_sin;  ///< of the weave's rotation
   T turn_cos;
   bool microfacet;
-  const T* constants;  ///< [channel]
+  bool shadowing;
+  std::span<const BatchOutput<T>> outputs;  ///< by sum
 };
 
 /// The kernels for one kind of vector registers.

@@ -20,7 +20,7 @@ LobeLanes::LobeLanes(const ClothModel<double>& model, std::vector<Channel> chann
     } else {
       few_.push_back(few_lobes(yarn, model.material().reflectance, tolerance));
     }
-    add(yarn.lobes[0].axes);
+    if (has_surface()) add(yarn.lobes[0].axes);
     for (const Lobe<double>& lobe : few_.back().lobes) add(lobe.axes);
   }
 }
@@ -31,7 +31,8 @@ void LobeLanes::weights(double cos_theta_d, std::span<double> weights) const {
   std::vector<double> few;
   for (std::size_t y = 0; y < few_.size(); ++y) {
     const PreparedYarn<double>& yarn = model_.yarns()[y];
-    const std::size_t count = 1 + few_[y].lobes.size();
+    const std::size_t surfaces = has_surface() ? 1 : 0;
+    const std::size_t count = surfaces + few_[y].lobes.size();
     if (y == 1 && model_.equal_yarns()) {
       scale_copy(weights, count);
       continue;
@@ -39,7 +40,7 @@ void LobeLanes::weights(double cos_theta_d, std::span<double> weights) const {
     const Interface<double> interface =
         fresnel(model_.incidence_cosine(cos_theta_d), yarn.yarn.refractive_index);
     path.resize(yarn.lobes.size());
-    few.resize(count);
+    few.resize(1 + few_[y].lobes.size());
     for (std::size_t colour = 0; colour < model_.channel_count(); ++colour) {
       path_weights(yarn.yarn, yarn.paths, interface, yarn.yarn.absorption[colour],
                    std::span<double>(path));
@@ -60,9 +61,11 @@ void LobeLanes::put(std::size_t y, Part part, std::span<const double> few, doubl
   const bool specular = part == Part::kTotal || part == Part::kSpecular;
   const bool internal = part == Part::kTotal || part == Part::kInternal;
   const double share = model_.equal_yarns() ? 1 : yarn.share;  // the copy takes care of it
-  to[0] = specular ? k.specular * share * few[0] / yarn.lobes[0].norm : 0;
+  if (has_surface()) {
+    *to++ = specular ? k.specular * share * few[0] / yarn.lobes[0].norm : 0;
+  }
   for (std::size_t l = 1; l < few.size(); ++l) {
-    to[l] = internal ? k.internal * share * few[l] / few_[y].lobes[l - 1].norm : 0;
+    *to++ = internal ? k.internal * share * few[l] / few_[y].lobes[l - 1].norm : 0;
   }
 }
 
@@ -77,9 +80,19 @@ void LobeLanes::scale_copy(std::span<double> weights, std::size_t count) const {
   }
 }
 
+bool LobeLanes::has_internal() const {
+  return std::any_of(few_.begin(), few_.end(),
+                     [](const FewLobes& few) { return !few.lobes.empty(); });
+}
+
 double LobeLanes::constant(std::size_t channel) const {
-  const Channel& c = channels_[channel];
-  return c.part == Part::kTotal || c.part == Part::kDiffuse ? model_.diffuse(c.colour) : 0;
+  return constant_part(model_, channels_[channel]);
+}
+
+double constant_part(const ClothModel<double>& model, const Channel& channel) {
+  return channel.part == Part::kTotal || channel.part == Part::kDiffuse
+             ? model.diffuse(channel.colour)
+             : 0;
 }
 
 double LobeLanes::error() const {

@@ -16,8 +16,9 @@ namespace clothbrdf {
 ///     h_warp^2 + h_n^2)
 ///         + constant(channel)
 ///
-/// Each yarn has one lane for its surface reflection and one for each of its few_lobes (none
-/// without layers). Shares, norms, k_s and k_i are in the weights. Keeps a reference to the model.
+/// Each yarn has one lane for its surface reflection (none where k_s is 0) and one for each of its
+/// few_lobes (none without layers). Shares, norms, k_s and k_i are in the weights. Keeps a
+/// reference to the model.
 class LobeLanes {
  public:
   LobeLanes(const ClothModel<double>& model, std::vector<Channel> channels, double tolerance);
@@ -32,6 +33,10 @@ class LobeLanes {
 
   /// [channel][lane] at an incidence cosine in [0, 1], or slightly above.
   void weights(double cos_theta_d, std::span<double> weights) const;
+
+  /// Whether lanes of surface reflections are there, and any others.
+  bool has_surface() const { return model_.material().weights.specular != 0; }
+  bool has_internal() const;
 
   /// Of a channel: the light without direction.
   double constant(std::size_t channel) const;
@@ -49,5 +54,8 @@ class LobeLanes {
   std::vector<double> weft_;
   std::vector<double> warp_;
 };
+
+/// The light without direction in a channel.
+double constant_part(const ClothModel<double>& model, const Channel& channel);
 
 }  // namespace clothbrdf

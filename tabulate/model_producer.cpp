@@ -92,6 +92,11 @@ void check_producible(const TableSpec& spec) {
           "--cells average: not for a material of reflectance 'paper', where the mean over cells "
           "at the horizon diverges; use --cells point");
     }
+    if (!spec.provenance.effects.shadowing) {
+      throw InputError(
+          "--cells average: not without shadowing, when f_r has no bound at grazing incidence; use "
+          "--cells point");
+    }
     if (spec.grid().kind != GridKind::kInOut && !spec.grid().folds_orders()) {
       throw InputError("averages of a reciprocal table are made for phi_d from 0 to 180 degrees");
     }

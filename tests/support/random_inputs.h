@@ -9,6 +9,7 @@
 #include <string>
 
 #include "model/directions.h"
+#include "model/effects.h"
 #include "model/material.h"
 
 namespace clothbrdf::test {
@@ -97,6 +98,17 @@ class RandomInputs {
       pair.phi_o = pair.phi_i + 180 + off * uniform(-1, 1);
     }
     return pair;
+  }
+
+  /// Each effect is off now and then, limits included.
+  Effects effects() {
+    Effects effects;
+    for (const auto& [name, member] : kComponentEffects) effects.*member = chance(0.8);
+    for (const auto& [name, member] : kOtherEffects) effects.*member = chance(0.7);
+    if (chance(0.2)) effects.layers = integer(0, 4);
+    if (chance(0.2)) effects.events = integer(1, 30);
+    if (chance(0.2)) effects.cos_theta_d = uniform(0.05, 1);
+    return effects;
   }
 
   /// In degrees, more than a turn either way; a quarter are multiples of 30.

@@ -2,6 +2,7 @@
 
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <cmath>
+#include <iostream>
 #include <numeric>
 
 #include "tests/catch.h"
@@ -87,6 +88,96 @@ TEST_CASE("weights of all paths are those of every walk followed by itself") {
       CHECK(followed[2 * j] == 0);
     }
   }
+}
+
+/// The same, by the number of reflections and events.
+struct Followed {
+  std::vector<double> far_sides;
+  std::vector<double> near_sides;
+  std::vector<double> interreflections;
+};
+
+void follow(int layers, int surface, bool down, int events, int reflections, bool far_side,
+            double weight, double r, double passage, Followed& sums) {
+  if (surface == 0) {
+    auto& sum =
+        reflections > 1 ? sums.interreflections : (far_side ? sums.far_sides : sums.near_sides);
+    sum[static_cast<std::size_t>(events)] += weight;
+    return;
+  }
+  if (surface > 2 * layers || events + 1 >= static_cast<int>(sums.far_sides.size())) return;
+  for (const bool reflects : {true, false}) {
+    const bool goes_down = reflects != down;
+    const bool in_yarn = goes_down == (surface % 2 == 1);
+    follow(layers, goes_down ? surface + 1 : surface - 1, goes_down, events + 1,
+           reflections + (reflects ? 1 : 0), far_side || (reflects && surface % 2 == 0),
+           weight * (reflects ? r : 1 - r) * (in_yarn ? passage : 1), r, passage, sums);
+  }
+}
+
+TEST_CASE("without near sides or interreflections just those walks are missing") {
+  const double r = 0.15;
+  const double absorption = 0.3;
+  const Interface<double> interface = interface_of(r);
+  double worst = 0;
+  for (const int layers : {1, 2, 3, 4}) {
+    const std::vector<double> none(24, 0.0);
+    Followed walks{none, none, none};
+    follow(layers, 1, true, 0, 0, false, 1, r, std::exp(-absorption / interface.cos_theta_t),
+           walks);
+    for (const bool near_sides : {true, false}) {
+      for (const int most : {0, 5, 9, 16, PathSet::kAnyEvents}) {
+        const PathSet paths(near_sides, most);
+        const Yarn yarn = yarn_of(layers, 0.01);
+        std::vector<double> weights(static_cast<std::size_t>(lobe_count(yarn, paths)));
+        path_weights(yarn, paths, interface, absorption, std::span<double>(weights));
+        for (std::size_t j = 1; j < std::min<std::size_t>(11, weights.size()); ++j) {
+          const std::size_t events = 2 * j + 1;
+          double exact = walks.far_sides[events];
+          // The surface reflection, one event, is no near side.
+          if (near_sides) exact += walks.near_sides[events];
+          if (static_cast<int>(events) <= most) exact += walks.interreflections[events];
+          INFO(layers << " layers, near sides " << near_sides << ", events up to " << most << ", "
+                      << events << " events: " << weights[j] << " for " << exact);
+          CHECK(std::fabs(weights[j] - exact) <= kPositiveTerms * exact);
+          worst = std::max(worst, exact > 0 ? std::fabs(weights[j] / exact - 1) : 0);
+        }
+      }
+    }
+  }
+  std::cout << "walks left out: worst relative error " << worst << "\n";
+}
+
+TEST_CASE("sets of paths sum to the same however many lobes there are") {
+  RandomInputs draw(seed_from_environment());
+  double worst = 0;
+  for (int n = 0; n < 300; ++n) {
+    const int layers = draw.integer(1, n % 10 == 0 ? 64 : 6);
+    const Interface<double> interface = fresnel(draw.uniform(0.01, 1), draw.uniform(1.01, 3));
+    const double absorption = draw.chance(0.3) ? 0 : draw.log_uniform(1e-4, 3);
+    const int most = draw.chance(0.5) ? PathSet::kAnyEvents : draw.integer(0, 200);
+    const PathSet paths(draw.chance(0.5), most);
+    const auto sum = [&](double scatter) {
+      const Yarn yarn = yarn_of(layers, scatter);
+      std::vector<double> weights(static_cast<std::size_t>(lobe_count(yarn, paths)));
+      path_weights(yarn, paths, interface, absorption, std::span<double>(weights));
+      return sum_of(weights);
+    };
+    const double few = sum(0);
+    for (const double scatter : {1e-4, 0.3, 1.0}) {
+      worst = std::max(worst, std::fabs(sum(scatter) / few - 1));
+    }
+    // All of them are what no set leaves out.
+    const Yarn yarn = yarn_of(layers, 0);
+    if (!paths.near_sides && most == PathSet::kAnyEvents) {
+      std::vector<double> near(2, 0.0);
+      add_near_sides(layers, interface, absorption, std::span<double>(near));
+      const double all = sum_of(weights_of(yarn, Paths::kAll, interface, absorption));
+      CHECK(std::fabs((few + near[1]) / all - 1) <= 1e-12);
+    }
+  }
+  INFO("worst " << worst);
+  CHECK(worst <= 1e-12);
 }
 
 TEST_CASE("however many lobes there are, the weights sum to the same") {

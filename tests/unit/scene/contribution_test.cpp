@@ -29,8 +29,8 @@ AngleBox random_box(RandomInputs& draw, double size) {
 }
 
 struct Worst {
-  double outside = -1;    ///< how far a value is beyond its bounds, relative
-  double loosest = 0;     ///< upper bound over value, of point boxes
+  double outside = -1;  ///< how far a value is beyond its bounds, relative
+  double loosest = 0;   ///< upper bound over value, of point boxes
   int compared = 0;
 };
 
@@ -45,8 +45,7 @@ void compare(const Material& material, const Effects& before, const Candidate& c
   const std::vector<double> radiance = {0.3, 1, 2.5};
   const Interval bounds = contribution(box, radiance);
   for (int n = 0; n < 8; ++n) {
-    const DirectionPair pair =
-        pair_in(box, {draw.unit(), draw.unit(), draw.unit(), draw.unit()});
+    const DirectionPair pair = pair_in(box, {draw.unit(), draw.unit(), draw.unit(), draw.unit()});
     const PairGeometry<double> g = pair_geometry(pair, 0.0);
     const Components f = with.evaluate(g);
     const Components less = without.evaluate(g);

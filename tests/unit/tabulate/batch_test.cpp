@@ -111,8 +111,12 @@ Worst worst_over_materials(RandomInputs& random, const MaterialRanges& ranges, i
     const Material material = random.material(ranges);
     std::vector<DirectionPair> pairs;
     for (int p = 0; p < 200; ++p) pairs.push_back(random.pair());
-    const Effects effects{n % 5 != 0, n % 7 != 0, n % 3 != 0};
-    compare<T>(material, effects, n % 4 == 0, pairs, worst);
+    const Effects components{n % 5 != 0, n % 7 != 0, n % 3 != 0};
+    compare<T>(material, components, n % 4 == 0, pairs, worst);
+    for (int k = 0; k < 2; ++k) {
+      const auto target = static_cast<std::size_t>(n + k) % batch_targets().size();
+      compare<T>(material, random.effects(), n % 4 == 0, pairs, worst, target);
+    }
   }
   return worst;
 }

@@ -41,15 +41,16 @@ TEST_CASE("point values are those of the model at the nodes, component by compon
   double worst = 0;
   double worst_in_batches = 0;
   int compared = 0;
-  for (int n = 0; n < 12; ++n) {
+  for (int n = 0; n < 24; ++n) {
     const Reflectance reflectance = n % 2 == 0 ? Reflectance::kMicrofacet : Reflectance::kPaper;
     const Material material = random_material(random, reflectance);
-    const ClothModel<double> model(material);
+    const Effects effects = n < 4 ? Effects{} : random.effects();
+    const ClothModel<double> model(material, effects);
     const double turn = reflectance == Reflectance::kPaper ? 360 : 180;
     for (const Grid& grid : {halfdiff4d(5, 4, 6, 8, turn), inout(4, 6, 3, 4), inout(3, 6, 3, 6),
                              inout(2, 17, 2, 13)}) {
       const Table table =
-          collect(*make_producer(material_spec(material, {}, grid, {}, true), 2), 2);
+          collect(*make_producer(material_spec(material, effects, grid, {}, true), 2), 2);
       for (std::size_t cell = 0; cell < grid.cell_count(); ++cell) {
         const Directions d = grid.directions(cell);
         const Components f = model.evaluate(pair_geometry(d.wi, d.wo, material.rotation_deg));
