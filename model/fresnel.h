@@ -12,18 +12,6 @@ struct Interface {
   T cos_theta_t;  ///< inside the yarn
 };
 
-/// r of an interface, by the plain formula: all that light from outside needs to know. x is the
-/// incidence cosine, m = (n - 1) (n + 1) of the refractive index n; not both 0. Without branches,
-/// so that vector registers are scalars, too.
-template <class T>
-T fresnel_reflected(const T& x, const T& m) {
-  using std::sqrt;
-  const T q = sqrt(m + x * x) + x;
-  const T a = m / (q * q);
-  const T b = (x * q - T(1)) / (x * m / q + T(1));
-  return a * a * (T(1) + b * b) / T(2);
-}
-
 /// Unpolarised Fresnel reflection of a dielectric: incidence cosine in [0, 1], refractive index in
 /// [1, 3]. Index 1 reflects nothing, at cosine 0 too (reading). Total at cosine 0 otherwise. Paper,
 /// section 3.1: the reflectance r of eq. 1. The forms are model.md section 4's: t = 1 - r would
@@ -40,7 +28,9 @@ Interface<T> fresnel(const T& cos_theta_d, const T& refractive_index) {
   const T g = sqrt(m + x * x);
   const T q = g + x;
   if (!(q > T(0))) return {T(0), T(1), T(0)};
-  const T r = fresnel_reflected(x, m);
+  const T a = m / (q * q);
+  const T b = (x * q - T(1)) / (x * m / q + T(1));
+  const T r = a * a * (T(1) + b * b) / T(2);
   if (r < T(0.5)) return {r, T(1) - r, g / n};
   const T p = n / (n * n * x + g);
   const T t = T(2) * x * g * (T(1) / (q * q) + p * p);

@@ -46,11 +46,12 @@ struct Choice {
 
 class MaterialPlanner {
  public:
-  MaterialPlanner(const Material& material, const LitBoxes& lit, double budget,
+  MaterialPlanner(const Material& material, const LitBoxes& lit, double brightest, double tolerance,
                   const Workers& workers)
       : material_(material),
         lit_(lit),
-        budget_(budget),
+        budget_(tolerance * brightest),
+        rounding_(kRounding * brightest),
         workers_(workers),
         effects_(candidates(material, mean_cosine(lit))) {}
 
@@ -98,7 +99,7 @@ class MaterialPlanner {
     enough.too_much = budget_;
     const BoxBounds bounds = [&](const LitBox& lit) { return contribution(lit.box, lit.radiance); };
     const double most = maximum(bounds, lit_.boxes(), enough, workers_).value.high;
-    return most == 0 ? 0 : most * (1 + kRelativeRounding) + kRounding * budget_;
+    return most * (1 + kRelativeRounding) + rounding_;
   }
 
   void estimate() {
@@ -197,6 +198,7 @@ class MaterialPlanner {
   const Material& material_;
   const LitBoxes& lit_;
   double budget_;
+  double rounding_;
   const Workers& workers_;
   std::vector<std::vector<Candidate>> effects_;
   std::vector<double> estimates_;  // of all candidates, in order
@@ -225,7 +227,7 @@ Plan make_plan(const Scene& scene, Workers workers) {
   for (std::size_t m = 0; m < found.size(); ++m) {
     const LitBoxes lit(scene, scene.materials[m]);
     MaterialPlan of_material =
-        MaterialPlanner(scene.materials[m], lit, scene.tolerance * plan.brightest, workers).plan();
+        MaterialPlanner(scene.materials[m], lit, plan.brightest, scene.tolerance, workers).plan();
     for (LeftOut& out : of_material.left_out) out.bound /= plan.brightest;
     of_material.bound /= plan.brightest;
     of_material.brightest = found[m].reached;

@@ -153,36 +153,33 @@ void sum_lanes(const BatchPlan<T>& plan, std::size_t first, std::size_t count, B
   }
 }
 
-/// A vector register as a scalar of the model.
-template <class D>
-struct Lanes {
-  hn::Vec<D> v;
-
-  explicit Lanes(hn::Vec<D> of) : v(of) {}
-  explicit Lanes(int all) : v(hn::Set(D(), static_cast<hn::TFromD<D>>(all))) {}
-  friend Lanes operator+(Lanes a, Lanes b) { return Lanes(hn::Add(a.v, b.v)); }
-  friend Lanes operator-(Lanes a, Lanes b) { return Lanes(hn::Sub(a.v, b.v)); }
-  friend Lanes operator*(Lanes a, Lanes b) { return Lanes(hn::Mul(a.v, b.v)); }
-  friend Lanes operator/(Lanes a, Lanes b) { return Lanes(hn::Div(a.v, b.v)); }
-  friend Lanes sqrt(Lanes a) { return Lanes(hn::Sqrt(a.v)); }
-};
+/// fresnel()'s r for incidence cosines x; m = (n - 1) (n + 1) of the refractive index n.
+template <class D, class V>
+V reflected(D d, V x, V m) {
+  const auto one = hn::Set(d, static_cast<hn::TFromD<D>>(1));
+  const auto half = hn::Set(d, static_cast<hn::TFromD<D>>(0.5));
+  const auto q = hn::Add(hn::Sqrt(hn::MulAdd(x, x, m)), x);
+  const auto a = hn::Div(m, hn::Mul(q, q));
+  const auto b = hn::Div(hn::MulSub(x, q, one), hn::MulAdd(x, hn::Div(m, q), one));
+  return hn::Mul(hn::Mul(half, hn::Mul(a, a)), hn::MulAdd(b, b, one));
+}
 
 /// The sum over surface reflections: lanes over pairs, no table.
 template <bool kMean, class T>
 void sum_surfaces(const BatchPlan<T>& plan, Block<T>& block) {
   const hn::ScalableTag<T> d;
   const std::size_t n = hn::Lanes(d);
-  using V = Lanes<hn::ScalableTag<T>>;
   for (std::size_t p = 0; p < kBlock; p += n) {
     const auto load = [&](const T* from) { return hn::Load(d, from + p); };
-    const V x(load(block.place));
+    const auto x = load(block.place);
     auto sum = hn::Zero(d);
     for (std::size_t lane = 0; lane < plan.lanes; ++lane) {
       const auto density =
           lane_density<kMean>(d, hn::Set(d, plan.weft[lane]), hn::Set(d, plan.warp[lane]),
                               load(block.weft2), load(block.warp2), load(block.normal2));
-      const V reflected = fresnel_reflected(x, V(hn::Set(d, plan.steepness[lane])));
-      sum = hn::MulAdd(hn::Mul(reflected.v, hn::Set(d, plan.coefficients[lane])), density, sum);
+      const auto weight = hn::Mul(reflected(d, x, hn::Set(d, plan.steepness[lane])),
+                                  hn::Set(d, plan.coefficients[lane]));
+      sum = hn::MulAdd(weight, density, sum);
     }
     hn::Store(sum, d, block.sum[0] + p);
   }
