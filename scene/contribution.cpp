@@ -81,6 +81,7 @@ Contribution::Contribution(const ClothModel<double>& model, const Quantity& quan
         parts_.back().channels[c].sign = -1;
     }
   }
+  for (std::size_t c = 0; c < model.channel_count(); ++c) constants_.push_back(constant(c));
 }
 
 void Contribution::take_densities(YarnPart& part, const GeometryBounds& g) const {
@@ -124,7 +125,7 @@ WalkBounds Contribution::walks(const YarnPart& part, std::size_t channel, const 
 
 WalkBounds Contribution::walks_in_cells(YarnPart& part, std::size_t channel, const Interval& x) {
   // Cells of 2^-level: a box's range lies in a few, and boxes share them.
-  constexpr int kFinest = 14;
+  constexpr int kFinest = 11;
   const double width = std::max(x.width(), 1e-9);
   const int level = std::clamp(static_cast<int>(std::ceil(-std::log2(width))) + 1, 1, kFinest);
   const double size = std::ldexp(1.0, -level);
@@ -185,23 +186,22 @@ Interval Contribution::directional(std::size_t channel, const Interval& x) {
 }
 
 // Of one channel: f of the light without direction.
-Interval Contribution::constant(std::size_t channel) const {
+double Contribution::constant(std::size_t channel) const {
   const Material& material = model_.material();
-  const auto all = [](double value) { return Interval{value, value}; };
   switch (quantity_.kind) {
     case Kind::kWhole:
-    case Kind::kDiffuse: return all(model_.diffuse(channel));
+    case Kind::kDiffuse: return model_.diffuse(channel);
     case Kind::kSmallerYarn: {
       const PreparedYarn<double>& yarn = *parts_.front().yarn;
-      return all(diffuse_reflectance(
-          material, {yarn.warp ? yarn.share : 0, yarn.warp ? 0 : yarn.share}, channel));
+      return diffuse_reflectance(material, {yarn.warp ? yarn.share : 0, yarn.warp ? 0 : yarn.share},
+                                 channel);
     }
     case Kind::kColour: {
       Effects grey = model_.effects();
       grey.colour = false;
-      return all(model_.diffuse(channel) - ClothModel<double>(material, grey).diffuse(channel));
+      return model_.diffuse(channel) - ClothModel<double>(material, grey).diffuse(channel);
     }
-    default: return {};
+    default: return 0;
   }
 }
 
@@ -223,7 +223,7 @@ Interval Contribution::operator()(const AngleBox& box, std::span<const double> r
   Interval largest;
   for (std::size_t c = 0; c < radiance.size(); ++c) {
     if (!(radiance[c] > 0)) continue;
-    Interval value = constant(c) * g.cos_theta_i;
+    Interval value = Interval{constants_[c], constants_[c]} * g.cos_theta_i;
     if (lit) {
       const Interval sum = directional(c, x);
       // An unbounded factor times nothing is nothing.

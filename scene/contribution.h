@@ -67,13 +67,14 @@ class Contribution {
   WalkBounds walks(const YarnPart& part, std::size_t channel, const Interval& x) const;
   WalkBounds walks_in_cells(YarnPart& part, std::size_t channel, const Interval& x);
   Interval directional(std::size_t channel, const Interval& x);
-  Interval constant(std::size_t channel) const;
+  double constant(std::size_t channel) const;
 
   const ClothModel<double>& model_;
   Quantity quantity_;
   bool has_surface_;
   bool has_walks_;
   std::vector<YarnPart> parts_;
+  std::vector<double> constants_;          // [channel]
   std::vector<std::vector<double>> grey_;  // [yarn][channel], absorption without colour
 };
 

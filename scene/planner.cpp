@@ -15,6 +15,8 @@
 namespace clothbrdf {
 namespace {
 
+using Kind = Quantity::Kind;
+
 // More than all roundings of a bound together, relative to it and to the brightest value.
 constexpr double kRelativeRounding = 1e-9;
 constexpr double kRounding = 1e-12;
@@ -80,11 +82,18 @@ class MaterialPlanner {
       plan.left_out.push_back({choice.left_out[k]->effect, choice.left_out[k]->what, bounds[k]});
       plan.bound += bounds[k];
     }
-    for (const std::vector<Candidate>& effect : effects_) {
-      if (!effect.front().changes)
-        plan.left_out.push_back({effect.front().effect, effect.front().what, 0});
+    // What has nothing to do in what is left: never had, or no more.
+    const auto left = candidates(apply_effects(material_, plan.effects), 1);
+    for (std::size_t k = 0; k < effects_.size(); ++k) {
+      if (left[k].front().changes) continue;
+      const std::string& name = effects_[k].front().effect;
+      const bool named =
+          std::any_of(choice.left_out.begin(), choice.left_out.end(), [&](const Candidate* out) {
+            return out->quantity.kind == effects_[k].front().quantity.kind;
+          });
+      if (!named) plan.left_out.push_back({name, effects_[k].front().what + ": nothing of it", 0});
     }
-    plan.kept = kept(choice);
+    plan.kept = kept(choice, left);
     const double full = evaluation_cost(material_, {});
     plan.saving.evaluation = 1 - evaluation_cost(material_, plan.effects) / full;
     return plan;
@@ -178,18 +187,18 @@ class MaterialPlanner {
   }
 
   // Effects that are on: not left out, and with something to do.
-  std::vector<std::string> kept(const Choice& choice) const {
+  std::vector<std::string> kept(const Choice& choice,
+                                const std::vector<std::vector<Candidate>>& left) const {
     std::vector<std::string> names;
-    for (const std::vector<Candidate>& effect : effects_) {
-      if (!effect.front().changes) continue;
-      const auto left_out =
-          std::find_if(choice.left_out.begin(), choice.left_out.end(), [&](const Candidate* c) {
-            return c >= effect.data() && c < effect.data() + effect.size();
-          });
-      if (left_out == choice.left_out.end()) {
-        names.push_back(effect.front().effect);
-      } else if ((*left_out)->quantity.kept > 0) {
-        names.push_back((*left_out)->effect);  // with a limit
+    for (std::size_t k = 0; k < effects_.size(); ++k) {
+      if (!left[k].front().changes) continue;
+      const Kind kind = effects_[k].front().quantity.kind;
+      const auto out = std::find_if(choice.left_out.begin(), choice.left_out.end(),
+                                    [&](const Candidate* c) { return c->quantity.kind == kind; });
+      if (out == choice.left_out.end()) {
+        names.push_back(effects_[k].front().effect);
+      } else if ((*out)->quantity.kept > 0) {
+        names.push_back((*out)->effect);  // with a limit
       }
     }
     return names;

@@ -70,6 +70,8 @@ TEST_CASE("the README's session runs as printed") {
   const TemporaryFolder folder;
   std::filesystem::create_directory_symlink(
       std::filesystem::path(CLOTHBRDF_SOURCE_DIR) / "materials", folder / "materials");
+  std::filesystem::create_directory_symlink(
+      std::filesystem::path(CLOTHBRDF_SOURCE_DIR) / "examples", folder / "examples");
   const std::string start = "cd '" + folder.path().string() + "' && PATH='" +
                             std::filesystem::path(CLOTHBRDF_PROGRAM).parent_path().string() +
                             "':\"$PATH\" && ";
