@@ -115,7 +115,7 @@ Brightest brightest(const ClothModel<double>& model, const LitBoxes& scene,
   // First roughly, to learn from where to climb; then as closely as is worth it.
   Brightest found;
   for (const Enough& enough :
-       {Enough{.ratio = 1.3, .most_boxes = 50000}, Enough{.ratio = kClose, .most_boxes = 400000}}) {
+       {Enough{.ratio = 1.3, .most_boxes = 50000}, Enough{.ratio = kClose, .most_boxes = 200000}}) {
     Enough known = enough;
     known.reached = found.reached;
     const Maximum range = maximum(bounds, scene.boxes(), known, workers);

@@ -24,7 +24,7 @@ struct Enough {
   double reached = 0;       ///< a value that is known to be reached
   double negligible = 0;    ///< or high is no more than this
   double too_much = 1e300;  ///< or low is more than this
-  std::size_t most_boxes = 200000;
+  std::size_t most_boxes = 60000;
 };
 
 /// The largest value over all boxes: proven to lie in a range.

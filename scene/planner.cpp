@@ -95,7 +95,9 @@ class MaterialPlanner {
     }
     plan.kept = kept(choice, left);
     const double full = evaluation_cost(material_, {});
-    plan.saving.evaluation = 1 - evaluation_cost(material_, plan.effects) / full;
+    const double evaluation = evaluation_cost(material_, plan.effects) / full;
+    const double cells = plan.effects.anisotropy ? 1 : kCellsWithoutAnisotropy;
+    plan.saving = {1 - evaluation, 1 - cells, 1 - evaluation * cells};
     return plan;
   }
 
