@@ -163,7 +163,8 @@ TEST_CASE("a bad value of an option is told with the option and what is allowed"
   refuse("--grid", {"inout:1", "inout:1x1x1x1x1"}, "inout takes 4 sizes");
   refuse("--cells", {"", "mean", "average:", "average:0", "average:2", "average:x", "average:nan"},
          "point, average or average:REL");
-  refuse("--effects", {"", "foo", "Specular", "specular;diffuse"}, "specular, internal[:LAYERS], diffuse");
+  refuse("--effects", {"", "foo", "Specular", "specular;diffuse"},
+         "specular, internal[:LAYERS], diffuse");
   refuse("--threads", {"", "0", "-1", "1025", "x", "1.5", "99999999999999999999"},
          "a whole number from 1 to 1024");
   for (BadCommandLine& bad : cases) {
@@ -171,7 +172,8 @@ TEST_CASE("a bad value of an option is told with the option and what is allowed"
   }
   check_refused(cases);
   check_refused({
-      {{"eval", kSilk, "--effects", "foo"}, {"--effects: 'foo'", "specular, internal[:LAYERS], diffuse"}},
+      {{"eval", kSilk, "--effects", "foo"},
+       {"--effects: 'foo'", "specular, internal[:LAYERS], diffuse"}},
       {tabulate("x.exr", {"--grid", "inout", "--grid", "inout"}), {"--grid: allowed only once"}},
       {tabulate("x.exr", {"--effects", "specular,,diffuse"}), {"--effects: '' is not an effect"}},
       {tabulate("x.exr", {"--dry-run=maybe"}), {"--dry-run", "maybe"}},

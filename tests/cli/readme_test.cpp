@@ -90,7 +90,7 @@ TEST_CASE("the README's session runs as printed") {
     CHECK(masked(read_file(printed)) == masked(expected));
     ++commands;
   }
-  CHECK(commands == 14);
+  CHECK(commands == 15);
 }
 
 TEST_CASE("the README's material is the preset silk") {
