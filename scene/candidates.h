@@ -21,14 +21,14 @@ struct Candidate {
 /// that of the cloth without those before it. Of one effect there may be several, each less drastic
 /// than the one before.
 /// `mean_cosine` stands for cos theta_d where Fresnel's angle is left out.
-std::vector<std::vector<Candidate>> candidates(const Material& material, double mean_cosine);
+std::vector<std::vector<Candidate>> candidates(const Material& whole, double mean_cosine);
 
 /// Takes one more thing away.
 void leave_out(Effects& effects, const Candidate& candidate);
 
 /// Work to evaluate a pair of directions, and its share of what comes before all pairs, in
 /// multiply-adds: as the batch evaluator does it.
-double evaluation_cost(const Material& material, const Effects& effects);
+double evaluation_cost(const Material& whole, const Effects& effects);
 
 /// The share of a table's cells that is left where anisotropy is off: no axis phi_h.
 inline constexpr double kCellsWithoutAnisotropy = 1.0 / 36;

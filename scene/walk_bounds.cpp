@@ -34,7 +34,7 @@ Ends ends_of(double refractive_index, double absorption, const Interval& cos_the
 class Stacks {
  public:
   Stacks(int layers, double r, double once) : r_(r), twice_(once * once) {
-    const auto interfaces = static_cast<std::size_t>(2 * layers);
+    const auto interfaces = 2 * static_cast<std::size_t>(layers);
     reflects_.assign(interfaces + 1, 0.0);
     for (std::size_t i = interfaces; i-- > 0;) {
       const double t = 1 - r;
@@ -73,7 +73,7 @@ Interval added_total(int layers, int kept, const Ends& ends) {
     if (!(t > 0)) return 0.0;
     const Stacks all(layers, r, once);
     const Stacks few(kept, r, once);
-    const auto last = static_cast<std::size_t>(2 * kept);
+    const auto last = 2 * static_cast<std::size_t>(kept);
     double product = all.reflects(last);
     for (std::size_t i = last; i-- > 0;) {
       product *= t * t * all.below(i) / ((1 - r * all.returned(i)) * (1 - r * few.returned(i)));
@@ -90,7 +90,7 @@ Interval interreflected_total(int layers, const Ends& ends) {
     const Stacks stacks(layers, r, once);
     double at_once = 0;
     double later = 0;
-    for (auto i = static_cast<std::size_t>(2 * layers); i-- > 0;) {
+    for (auto i = 2 * static_cast<std::size_t>(layers); i-- > 0;) {
       const double crossing = t * t * stacks.below(i);
       const double returns = r * stacks.returned(i);
       later = crossing * (later + at_once * returns) / (1 - returns);
@@ -211,7 +211,7 @@ LobeBounds lobe_bounds(const PreparedYarn<double>& yarn, double absorption, cons
   // What reaches a deeper layer has at least that many events; what comes back from there is at
   // most what the deeper layers add to the stack.
   LobeBounds deeper = lobe_bounds(yarn, absorption, {}, ends);
-  const std::size_t first = std::min(static_cast<std::size_t>(2 * walks.kept), count - 1);
+  const std::size_t first = std::min(2 * static_cast<std::size_t>(walks.kept), count - 1);
   const Interval added = added_total(layers, walks.kept, ends);
   for (std::size_t j = 0; j < count; ++j) {
     deeper.lobes[j] = {0, j < first ? 0 : std::min(deeper.lobes[j].high, added.high)};
@@ -326,6 +326,7 @@ double largest_sum(const WalkBounds& weights, const std::vector<double>& densiti
 
 Interval sum_bounds(const WalkBounds& weights, const std::vector<Interval>& densities) {
   std::vector<double> ends;
+  ends.reserve(densities.size());
   for (const Interval& density : densities) ends.push_back(density.high);
   const double high = largest_sum(weights, ends);
   for (std::size_t g = 0; g < densities.size(); ++g) ends[g] = -densities[g].low;
