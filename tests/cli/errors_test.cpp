@@ -38,7 +38,8 @@ TEST_CASE("the program tells its version and its help, with an example for each 
   CHECK(version.out.starts_with("clothbrdf 0."));
   const Outcome help = run_program({"--help"});
   CHECK(help.exit_code == 0);
-  for (const std::string command : {"new", "eval", "tabulate", "info", "fit", "identify", "cost"}) {
+  for (const std::string command :
+       {"new", "eval", "tabulate", "info", "fit", "identify", "cost", "plan"}) {
     CHECK_THAT(help.out, ContainsSubstring("\n  " + command + " "));
     const Outcome more = run_program({command, "--help"});
     CAPTURE(command, more.out);

@@ -131,6 +131,22 @@ TEST_CASE("of options for one parameter the last counts, and the command line be
   CHECK(verdict({"--fix", "warp.scatter=0.1", "--free", "warp"}) != "fixed");
 }
 
+TEST_CASE("a fit says which effects its table was made without") {
+  const TemporaryFolder folder;
+  const std::string table = (folder / "t.exr").string();
+  const auto notes = [&](const std::string& effects) {
+    output_of({"tabulate", preset("silk").string(), "-o", table, "--grid", "halfdiff3d:8x8x8",
+               "--effects", effects});
+    const std::string report = (folder / "r.json").string();
+    run_program(fit(table, {"-o", report}));
+    return report_of(report).at("notes").dump();
+  };
+  CHECK_THAT(notes("specular,internal:3,diffuse,no-scatter"),
+             ContainsSubstring("the table was made with internal:3, no-scatter; the fit has the "
+                               "effects that these leave out"));
+  CHECK(notes("specular,internal,diffuse").find("was made with") == std::string::npos);
+}
+
 TEST_CASE("fit of a table without a single value exits 1, with a report and no material") {
   const TemporaryFolder folder;
   const std::string table = (folder / "masked.exr").string();

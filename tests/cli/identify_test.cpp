@@ -135,6 +135,8 @@ TEST_CASE("identify refuses what makes no sense, in one line") {
       {{kSilk, "--grid", "cube"}, "--grid: 'cube' is not allowed"},
       {{kSilk, "--cells", "mean"}, "--cells: 'mean' is not allowed"},
       {{kSilk, "--effects", "gloss"}, "--effects: 'gloss' is not an effect"},
+      {{kSilk, "--effects", "internal,no-scatter"}, "--effects: 'no-scatter' is not allowed"},
+      {{kSilk, "--effects", "internal:4"}, "--effects: 'internal:4' is not allowed"},
       {{kSilk, "--fix", "gloss"}, "gloss"},
       {{kSilk, "--refits", "-1"}, "--refits: '-1' is not allowed: a whole number from 0 to"},
       {{kSilk, "--noise", "none"}, "--noise: 'none' is not allowed"},

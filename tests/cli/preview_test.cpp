@@ -107,6 +107,30 @@ TEST_CASE("exposure, light and eye of preview reach the sheet") {
   CHECK(same_panels(picture, arranged({{sheet("silk", {{40, 30}, {25.5, -100}, kSize, -1.5})}})));
 }
 
+TEST_CASE(
+    "option --effects of preview reaches the materials, and is refused where there are none") {
+  const Image picture = drawn({kSilk}, {"--effects", "internal:2,no-scatter", "--light", "20,0"});
+  Effects effects;
+  effects.specular = effects.diffuse = effects.scatter = false;
+  effects.layers = 2;
+  const auto shading =
+      material_cloth(read_material(kSilk), kSilk, 1, effects)->shading(Part::kTotal);
+  const Image expected = render_sheet(shading, {{20, 0}, {}, kSize, 0}, 1);
+  CHECK(same_panels(picture, arranged({{expected}})));
+  CHECK(!same_panels(picture, arranged({{sheet("silk", {{20, 0}, {}, kSize, 0})}})));
+
+  const TemporaryFolder folder;
+  const std::string table = (folder / "t.exr").string();
+  write_table(preset_table("silk", inout(2, 4, 2, 4)), table);
+  CHECK_THAT(refused(preview({table}, (folder / "p.png").string(), {"--effects", "internal"})),
+             ContainsSubstring("--effects: not with tables alone"));
+  CHECK(!std::filesystem::exists(folder / "p.png"));
+  // Beside a table it is the material's.
+  const Image both =
+      drawn({kSilk, table}, {"--effects", "internal:2,no-scatter", "--light", "20,0"});
+  CHECK(both.height > picture.height);
+}
+
 TEST_CASE("option --size is the edge of a panel in pixels") {
   const TemporaryFolder folder;
   const std::string png = (folder / "p.png").string();

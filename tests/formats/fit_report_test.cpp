@@ -156,8 +156,9 @@ TEST_CASE("every verdict has its word in both schemas") {
   }
 }
 
-TEST_CASE("every property of the schemas of fits is described, every number with its unit") {
-  for (const char* file : {"fit.schema.json", kFitSchema, kIdentifySchema}) {
+TEST_CASE("every property of the schemas is described, every number with its unit") {
+  for (const char* file :
+       {"fit.schema.json", kFitSchema, kIdentifySchema, "scene.schema.json", "plan.schema.json"}) {
     int numbers = 0;
     visit_schemas(json::parse(schema_text(file)), file, [&](const json& schema, const auto& at) {
       CAPTURE(at);
