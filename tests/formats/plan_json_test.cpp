@@ -80,7 +80,7 @@ std::string refusal(const std::string& pointer, const json& value) {
   try {
     parse_plan(file.dump(), "plan.json");
   } catch (const InputError& error) {
-    const std::string message = error.what();
+    std::string message = error.what();
     CHECK(message.find_first_of("\r\n") == std::string::npos);
     return message;
   }
