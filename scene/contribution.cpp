@@ -12,7 +12,7 @@ using Kind = Quantity::Kind;
 // How far a group's lobes may differ. Where weights change in both directions, as with Fresnel's
 // angle, what lobes of a group differ by stays even in the smallest box.
 constexpr double kGrowth = 1.1;
-constexpr double kNearlyOne = 1.001;
+constexpr double kNearlyOne = 1.02;
 
 bool is_one_of(Kind kind, std::initializer_list<Kind> kinds) {
   return std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
