@@ -19,7 +19,7 @@ using nlohmann::json;
 const std::string kCoat = CLOTHBRDF_SOURCE_DIR "/examples/scenes/black_wool_coat.json";
 
 Outcome passed(const Arguments& arguments, const std::string& input = "") {
-  const Outcome outcome = run_program(arguments, {.input = input});
+  Outcome outcome = run_program(arguments, {.input = input});
   INFO(outcome.err);
   REQUIRE(outcome.exit_code == 0);
   return outcome;

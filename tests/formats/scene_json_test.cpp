@@ -35,7 +35,7 @@ std::string scene_with(const std::string& key, const std::string& text) {
   }
   if (!found && !key.empty()) keys.emplace_back(key, text);
   for (const auto& [name, value] : keys) {
-    all += (all.empty() ? "{\"" : ", \"") + name + "\": " + value;
+    all.append(all.empty() ? "{\"" : ", \"").append(name).append("\": ").append(value);
   }
   return all + "}";
 }
