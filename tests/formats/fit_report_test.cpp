@@ -157,14 +157,16 @@ TEST_CASE("every verdict has its word in both schemas") {
 }
 
 TEST_CASE("every property of the schemas is described, every number with its unit") {
-  for (const char* file :
-       {"fit.schema.json", kFitSchema, kIdentifySchema, "scene.schema.json", "plan.schema.json"}) {
+  for (const auto& [file, least_numbers] :
+       {std::pair("fit.schema.json", 5), std::pair(kFitSchema, 5), std::pair(kIdentifySchema, 5),
+        std::pair("scene.schema.json", 2), std::pair("plan.schema.json", 5)}) {
     int numbers = 0;
     visit_schemas(json::parse(schema_text(file)), file, [&](const json& schema, const auto& at) {
       CAPTURE(at);
       const bool of_all = at.ends_with("/items") || at.ends_with("/additionalProperties");
       if (at.find("/properties/") != std::string::npos && !of_all) {
-        CHECK(schema.contains("description"));
+        // What is referred to is described there.
+        CHECK((schema.contains("description") || schema.contains("$ref")));
       }
       const std::string type = schema.value("type", "");
       if (type == "number" || type == "integer") {
@@ -173,7 +175,7 @@ TEST_CASE("every property of the schemas is described, every number with its uni
         ++numbers;
       }
     });
-    CHECK(numbers >= 5);
+    CHECK(numbers >= least_numbers);
   }
 }
 
