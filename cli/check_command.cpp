@@ -84,6 +84,12 @@ std::vector<std::string> problems(const TableSpec& spec, const TableCheck& check
 std::vector<std::string> notes(const TableSpec& spec, const TableCheck& check) {
   std::vector<std::string> found;
   if (!spec.provenance.note.empty()) found.push_back(spec.provenance.note);
+  if (check.not_reached > 0) {
+    found.push_back(with_commas(check.not_reached) +
+                    " cells above the horizon are not for the scene that the table was made for: "
+                    "they hold 0 and do not count");
+  }
+  if (spec.reach) found.emplace_back("no albedo: a table for a scene lacks directions");
   if (check.masked > 0) {
     found.push_back(with_commas(check.masked) + " cells above the horizon are marked as not valid");
   }
@@ -116,7 +122,7 @@ void print_text(const CheckOptions& options, const TableSpec& spec, const TableC
   if (const std::optional<Albedo> largest = check.largest_albedo()) {
     line("largest albedo", albedo_text(spec, *largest));
   }
-  line("albedo", "theta_i  largest of channels and azimuths");
+  if (!check.albedo.empty()) line("albedo", "theta_i  largest of channels and azimuths");
   for (const Albedo& a : check.albedo) {
     std::ostringstream row;
     row << std::right << std::setw(7) << a.theta_i_deg << "  " << std::left << std::setw(8)
@@ -161,6 +167,7 @@ void print_json(const CheckOptions& options, const TableSpec& spec, const TableC
                {"cells", check.cells},
                {"below_horizon", check.below_horizon},
                {"masked", check.masked},
+               {"not_reached", check.not_reached},
                {"not_finite", flaw_json(spec, check.not_finite)},
                {"negative", flaw_json(spec, check.negative)},
                {"below_horizon_not_zero", flaw_json(spec, check.below_not_zero)}};

@@ -77,6 +77,10 @@ std::vector<std::string> what_is_lost(const Table& source, const Conversion& con
          << " of the value, or by " << stored.step / 2 << " where that is more";
     lost.push_back(text.str());
   }
+  if (from.reach && !(format.keeps_description && to.has_grid())) {
+    lost.emplace_back(
+        "the scene: no longer told apart are cells that it does not reach, which hold 0");
+  }
   if (!format.keeps_description && !from.provenance.program.empty()) {
     lost.emplace_back("the description: material, effects and cells");
   }
@@ -136,6 +140,7 @@ Conversion plan_conversion(const Table& source, const ConversionWish& wish) {
                          std::string(format.name) + " does; a list of pairs (.alta) can hold them");
       }
       if (samples != source.spec().samples) spec.cells = {};
+      if (!spec.has_grid()) spec.reach.reset();
       conversion.lost = what_is_lost(source, conversion, wish.write);
       return conversion;
     }
@@ -209,7 +214,9 @@ std::optional<ChannelDifference> run_conversion(const Table& source, const Conve
   if (const std::size_t count = not_measured(resampled); count > 0) {
     conversion.lost.push_back(
         with_commas(count) + " cells, which have no cell to be interpolated from: they hold " +
-        (source.spec().provenance.material ? "0" : "-1, the mark of such cells"));
+        (resampled.spec().provenance.material && !source.spec().reach
+             ? "0"
+             : "-1, the mark of such cells"));
   }
   conversion.compared_at = "at the old nodes";
   const ChannelDifference worst = worst_of(compare(from, resampled, workers));

@@ -14,8 +14,10 @@
 #include "cli/options.h"
 #include "formats/format.h"
 #include "formats/material_json.h"
+#include "formats/reach_json.h"
 #include "model/reflectance.h"
 #include "support/errors.h"
+#include "table/reached_cells.h"
 
 namespace clothbrdf {
 namespace {
@@ -70,6 +72,10 @@ Json table_info(const std::string& file, const Format& format, const Table& tabl
   std::size_t valid = 0;
   for (std::size_t cell = 0; cell < spec.cell_count(); ++cell) valid += table.valid(cell) ? 1 : 0;
   info["cells"] = {{"all", spec.cell_count()}, {"valid", valid}};
+  if (spec.reach) {
+    info["cells"]["reached"] = ReachedCells(spec.grid(), *spec.reach).count();
+    info["reach"] = reach_to_json(*spec.reach);
+  }
   if (!spec.provenance.program.empty()) {  // other files do not say
     info["cells"]["rule"] = spec.cells.average ? "average" : "point";
   }

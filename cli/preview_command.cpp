@@ -111,6 +111,7 @@ Panel make_panel(const Source& source, const View& view, const SheetView& sheet,
     workers.advance(image.pixels.size());
     return {caption, std::move(image)};
   }
+  if (source.cloth->for_scene()) caption += ", blue: not in it";
   const Shading shading = source.cloth->shading(view.part);
   return {caption, render_sheet(turned(shading, view.turn_deg), sheet, workers)};
 }

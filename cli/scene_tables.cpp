@@ -49,11 +49,11 @@ void check_scene(const Scene& scene, const std::string& file) {
 }
 
 std::vector<ClothTables> scene_tables(const Scene& scene, const std::vector<std::string>& names) {
-  if (scene.materials.size() == 1) return {{scene.materials.front(), {}, names, {}}};
+  if (scene.materials.size() == 1) return {{scene.materials.front(), {}, names, {}, scene.reach()}};
   const std::vector<std::string> endings = suffixes(scene.materials);
   std::vector<ClothTables> cloths;
   for (const Material& material : scene.materials) {
-    ClothTables cloth{material, {}, {}, {}};
+    ClothTables cloth{material, {}, {}, {}, scene.reach()};
     for (const std::string& name : names) {
       cloth.names.push_back(with_suffix(name, endings[cloths.size()]));
     }

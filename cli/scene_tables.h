@@ -17,7 +17,8 @@ struct ClothTables {
   Material material;
   Effects effects;
   std::vector<std::string> names;
-  std::optional<MaterialPlan> plan;  ///< of a scene's cloth, once it is planned
+  std::optional<MaterialPlan> plan = {};  ///< of a scene's cloth, once it is planned
+  std::optional<Reach> reach = {};        ///< of a scene
 };
 
 /// Throws InputError, in one line that starts with the file's name, where a scene contradicts

@@ -10,11 +10,21 @@
 #include "cli/options.h"
 #include "cli/plan_text.h"
 #include "formats/format_colours.h"
+#include "table/reached_cells.h"
 
 namespace clothbrdf {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+// "1,234 of 5,678 cells are for the scene".
+std::string reach_note(const TableSpec& spec, const Format& format) {
+  if (!spec.reach) return "";
+  const std::size_t reached = ReachedCells(spec.grid(), *spec.reach).count();
+  if (reached == spec.cell_count()) return "";
+  return with_commas(reached) + " cells are for the scene, the others hold 0" +
+         (format.keeps_description ? "" : ", which this format cannot tell from values");
+}
 
 std::string what_is_lost(const Material& material, const TableSpec& computed,
                          const TableSpec& written, const Format& format) {
@@ -27,6 +37,9 @@ std::string what_is_lost(const Material& material, const TableSpec& computed,
   if (!format.averages.empty()) lost.emplace_back(format.averages);
   if (const std::string colours = colours_note(computed, written); !colours.empty()) {
     lost.push_back(colours);
+  }
+  if (const std::string reached = reach_note(written, format); !reached.empty()) {
+    lost.push_back(reached);
   }
   std::string note;
   for (const std::string& what : lost) note += (note.empty() ? "" : "; ") + what;

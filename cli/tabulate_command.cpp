@@ -81,12 +81,12 @@ TableOutput make_output(const TabulateOptions& options, const ClothTables& cloth
                         const FileToWrite& file) {
   const Format& format = format_for(file.name);
   TableOutput output;
-  // The reach of a scene's table, which is its plan's, belongs into this order.
   output.order = {
       cloth.material,     cloth.effects,
       options.components, &format,
       file.options,       options.isotropic || (!cloth.effects.anisotropy && !options.grid),
-      file.name};
+      file.name,
+      cloth.reach};
   output.plan = cloth.plan;
   const auto set = [&] {
     output.setting = {samples_of(options, output.order),
@@ -126,7 +126,7 @@ std::vector<ClothTables> material_tables(const TabulateOptions& options, const M
     throw InputError("--output is required; see clothbrdf tabulate --help");
   }
   const Effects effects = options.effects ? parse_effects(*options.effects) : Effects{};
-  return {{material, effects, options.outputs, {}}};
+  return {{material, effects, options.outputs}};
 }
 
 std::vector<ClothTables> unplanned_tables(const TabulateOptions& options, const Scene& scene) {

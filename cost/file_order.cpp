@@ -10,8 +10,10 @@
 namespace clothbrdf {
 
 TableSpec computed_spec(const FileOrder& order, const FileSetting& setting) {
-  return material_spec(order.material, order.effects, setting.samples, setting.cells,
-                       order.with_components);
+  TableSpec spec = material_spec(order.material, order.effects, setting.samples, setting.cells,
+                                 order.with_components);
+  if (spec.has_grid()) spec.reach = order.reach;
+  return spec;
 }
 
 void check_setting(const FileOrder& order, const FileSetting& setting) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "formats/format.h"
@@ -19,6 +20,7 @@ struct FileOrder {
   WriteOptions options;
   bool isotropic = false;  ///< the mean over rotations, where the format leaves the choice
   std::string name;        ///< of the file; scratch files go beside it
+  std::optional<Reach> reach = {};  ///< of a scene: what the cells of a grid are computed for
 };
 
 /// How a file is made.

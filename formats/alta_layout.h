@@ -1,13 +1,14 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "table/table_spec.h"
+#include "table/table.h"
 
 namespace clothbrdf {
 
@@ -24,7 +25,7 @@ class AltaLayout {
   std::size_t dimension() const { return dimension_; }
 
   /// Whether a file has a row for a cell that was measured.
-  bool holds(std::size_t cell) const;
+  bool holds(std::size_t cell) const { return holds_[cell] != 0; }
 
   /// The first dimension() numbers of a cell's row, radians; 0 beyond.
   std::array<double, 4> coordinates(std::size_t cell) const;
@@ -38,6 +39,7 @@ class AltaLayout {
   const TableSpec& spec_;
   std::string_view parametrisation_;
   std::size_t dimension_;
+  std::vector<std::uint8_t> holds_;  // [cell]
 };
 
 /// A grid of fewer cells with a value than one in so many is not written: a reader could not tell

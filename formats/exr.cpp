@@ -260,7 +260,7 @@ Table read_exr(const std::filesystem::path& path) {
     if (stream.farthest() != std::filesystem::file_size(path)) {
       throw InputError(name + ": bytes follow the end of the picture");
     }
-    std::vector<std::uint8_t> valid = cells_above_horizon(spec);
+    std::vector<std::uint8_t> valid = cells_with_values(spec);
     const bool half = in.header().channels().begin().channel().type == Imf::HALF;
     mask_not_measured(spec, values, valid);
     return {std::move(spec), std::move(values), std::move(valid), exr_precision({.half = half})};

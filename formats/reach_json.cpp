@@ -50,9 +50,15 @@ nlohmann::ordered_json reach_to_json(const Reach& reach) {
 }
 
 Reach parse_reach(const nlohmann::json& json, const std::string& where) {
-  return {parse_ranges(json.at("lights"), where + "/lights"),
-          parse_ranges(json.at("eyes"), where + "/eyes"),
-          json.at("rotations_deg").get<std::vector<double>>()};
+  Reach reach{parse_ranges(json.at("lights"), where + "/lights"),
+              parse_ranges(json.at("eyes"), where + "/eyes"),
+              json.at("rotations_deg").get<std::vector<double>>()};
+  if (reach.combinations() > kMostCombinations) {
+    throw InputError(where + ": " + std::to_string(reach.combinations()) +
+                     " combinations of a light, an eye and a rotation are not allowed: at most " +
+                     std::to_string(kMostCombinations));
+  }
+  return reach;
 }
 
 DirectionRange parse_direction_range(const nlohmann::json& json, const std::string& where) {

@@ -13,7 +13,7 @@ namespace clothbrdf {
 nlohmann::ordered_json reach_to_json(const Reach& reach);
 
 /// The same from JSON that follows its schema; `where` stands for it in errors: "plan.json:
-/// /reach". Throws InputError for an empty range.
+/// /reach". Throws InputError for an empty range and for more than kMostCombinations.
 Reach parse_reach(const nlohmann::json& json, const std::string& where);
 
 /// A range of directions: an angle by itself stands for the range from it to itself, "phi_deg" left

@@ -49,16 +49,6 @@ Material scene_material(const json& material, const std::string& where,
   }
 }
 
-// Every combination is planned by itself.
-void check_combinations(const Scene& scene, const std::string& name) {
-  constexpr std::size_t kMost = 10'000;
-  if (scene.lights.size() * scene.eyes.size() * scene.rotations_deg.size() <= kMost) return;
-  throw InputError(name + ": /rotations_deg: " + std::to_string(scene.rotations_deg.size()) +
-                   " with " + std::to_string(scene.lights.size()) + " lights and " +
-                   std::to_string(scene.eyes.size()) +
-                   " eyes is not allowed: at most 10000 combinations");
-}
-
 // A value, or an array of them.
 template <class T>
 std::vector<T> one_or_more(const json& value) {
@@ -86,7 +76,6 @@ Scene scene_of(const json& file, const std::string& full_name,
     scene.eyes.push_back(parse_direction_range(eye, place("eyes", scene.eyes.size())));
   }
   scene.rotations_deg = file.value("rotations_deg", scene.rotations_deg);
-  check_combinations(scene, name);
   scene.tolerance = file.at("tolerance").get<double>();
   if (file.contains("output")) scene.outputs = one_or_more<std::string>(file["output"]);
   for (const json& material : file.at("materials")) {

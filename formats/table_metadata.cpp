@@ -9,6 +9,7 @@
 
 #include "formats/json_text.h"
 #include "formats/material_json.h"
+#include "formats/reach_json.h"
 #include "formats/schema_check.h"
 #include "support/errors.h"
 
@@ -149,6 +150,7 @@ std::string table_metadata(const TableSpec& spec) {
   json["cells"] = {{"rule", spec.cells.average ? "average" : "point"}};
   if (spec.cells.average) json["cells"]["tolerance"] = spec.cells.tolerance;
   json["effects"] = effect_words(from.effects);
+  if (spec.reach) json["reach"] = reach_to_json(*spec.reach);
   if (from.error) {
     const MeasuredError& e = *from.error;
     json["error"] = {{"rms", e.error.rms}, {"p99", e.error.p99},
@@ -184,6 +186,10 @@ TableSpec parse_table_metadata(std::string_view text, const std::string& name) {
   if (!effects) throw InputError(name + ": /effects: " + problem);
   spec.provenance.effects = *effects;
   spec.provenance.program = json["program"].get<std::string>();
+  if (json.contains("reach")) {
+    if (!spec.has_grid()) throw InputError(name + ": /reach: is for the cells of a grid");
+    spec.reach = parse_reach(json["reach"], name + ": /reach");
+  }
   if (json.contains("material"))
     spec.provenance.material = parse_material(json["material"].dump(), name + ": /material");
   if (json.contains("error")) {

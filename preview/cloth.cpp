@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -85,6 +86,7 @@ class TableCloth final : public Cloth {
   explicit TableCloth(Table table) : table_(std::make_shared<const Table>(std::move(table))) {}
 
   bool has(Part part) const override { return channels(part).has_value(); }
+  bool for_scene() const override { return table_->spec().reach.has_value(); }
 
   Shading shading(Part part) const override {
     const auto table = table_;
@@ -92,8 +94,11 @@ class TableCloth final : public Cloth {
     return Shading([table, wanted](std::span<const Directions> directions, std::span<Rgb> f) {
       std::vector<double> sample(table->spec().channels.size());
       for (std::size_t p = 0; p < directions.size(); ++p) {
-        table->interpolate(directions[p], sample);
+        const bool known = table->interpolate(directions[p], sample);
         f[p] = {sample[wanted[0]], sample[wanted[1]], sample[wanted[2]]};
+        if (!known && table->spec().reach && directions[p].above_horizon()) {
+          f[p].fill(std::numeric_limits<double>::quiet_NaN());
+        }
       }
     });
   }

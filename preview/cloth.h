@@ -14,7 +14,8 @@
 
 namespace clothbrdf {
 
-/// f_r of linear R, G and B at pairs of directions of the cloth's frame; 0 on or below the horizon.
+/// f_r of linear R, G and B at pairs of directions of the cloth's frame; 0 on or below the horizon,
+/// no number where a table made for a scene says nothing.
 /// May be called from several threads at once.
 class Shading {
  public:
@@ -42,6 +43,9 @@ class Cloth {
 
   /// Whether the component can be shown on its own.
   virtual bool has(Part part) const = 0;
+
+  /// Whether it lacks directions: a table made for a scene.
+  virtual bool for_scene() const { return false; }
 
   /// A part of f_r.
   virtual Shading shading(Part part) const = 0;

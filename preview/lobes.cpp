@@ -56,6 +56,7 @@ Plane outlines(const Cloth& cloth, const LobesView& view, double azimuth_deg) {
       const Directions d = {direction(view.light_theta_deg, azimuth_deg + 180),
                             direction(std::abs(theta), azimuth_deg + (theta < 0 ? 180 : 0))};
       const Rgb f = shading(d);
+      if (std::isnan(f[0])) continue;
       const auto at = static_cast<std::size_t>(k);
       sum[at] += std::max(0.0, luminance(f) * d.wo[2]);
       for (std::size_t c = 0; c < 3; ++c) colour[c] += f[c] * d.wo[2];

@@ -62,6 +62,7 @@ Image render_sheet(const Shading& shading, const SheetView& view, const Workers&
         const Directions& d = directions[p];
         const double scale = d.above_horizon() ? white * d.wi[2] : 0;
         for (double& value : pixels[p]) value *= scale;
+        if (std::isnan(pixels[p][0])) pixels[p] = kNotInTable;
       }
       workers.advance(static_cast<std::uint64_t>(view.size));
     });

@@ -34,8 +34,11 @@ struct SheetView {
   double exposure = 0;  ///< stops; at 0 a white diffuse sheet that faces the light is 1
 };
 
+/// Blue: the colour of directions of which a table made for a scene says nothing.
+inline constexpr Rgb kNotInTable = {0.02, 0.05, 0.35};
+
 /// pi f_r cos(theta_i) times the exposure at the middle of each pixel; 0 where the sheet turns away
-/// from light or eye. Throws Cancelled.
+/// from light or eye, kNotInTable where the shading is no number. Throws Cancelled.
 Image render_sheet(const Shading& shading, const SheetView& view, const Workers& workers);
 
 }  // namespace clothbrdf

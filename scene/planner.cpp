@@ -11,6 +11,8 @@
 #include "scene/candidates.h"
 #include "support/errors.h"
 #include "support/threads.h"
+#include "table/grid.h"
+#include "table/reached_cells.h"
 
 namespace clothbrdf {
 namespace {
@@ -40,6 +42,20 @@ double mean_cosine(const LitBoxes& lit) {
   return std::round(mean * kDigits) / kDigits;
 }
 
+// The share of a grid's cells above the horizon that a scene reaches.
+double reached_share(const Grid& grid, const Reach& reach) {
+  std::vector<std::uint8_t> cells = grid.above_horizon(CellPart::kNode);
+  const auto all = std::count(cells.begin(), cells.end(), 1);
+  ReachedCells(grid, reach).restrict(cells);
+  return static_cast<double>(std::count(cells.begin(), cells.end(), 1)) / static_cast<double>(all);
+}
+
+// What is left of the cells of a table, by the default grids.
+double cells_left(const Effects& effects, const Reach& reach) {
+  return effects.anisotropy ? reached_share(halfdiff4d(), reach)
+                            : kCellsWithoutAnisotropy * reached_share(halfdiff3d(), reach);
+}
+
 // A choice: of each effect none or one of its candidates.
 struct Choice {
   std::vector<const Candidate*> left_out;
@@ -48,11 +64,12 @@ struct Choice {
 
 class MaterialPlanner {
  public:
-  MaterialPlanner(const Material& material, const LitBoxes& lit, double brightest, double tolerance,
-                  const Workers& workers)
-      : material_(material),
+  MaterialPlanner(const Scene& scene, const Material& material, const LitBoxes& lit,
+                  double brightest, const Workers& workers)
+      : scene_(scene),
+        material_(material),
         lit_(lit),
-        budget_(tolerance * brightest),
+        budget_(scene.tolerance * brightest),
         rounding_(kRounding * brightest),
         workers_(workers),
         effects_(candidates(material, mean_cosine(lit))) {}
@@ -96,7 +113,7 @@ class MaterialPlanner {
     plan.kept = kept(choice, left);
     const double full = evaluation_cost(material_, {});
     const double evaluation = evaluation_cost(material_, plan.effects) / full;
-    const double cells = plan.effects.anisotropy ? 1 : kCellsWithoutAnisotropy;
+    const double cells = cells_left(plan.effects, scene_.reach());
     plan.saving = {1 - evaluation, 1 - cells, 1 - evaluation * cells};
     return plan;
   }
@@ -206,6 +223,7 @@ class MaterialPlanner {
     return names;
   }
 
+  const Scene& scene_;
   const Material& material_;
   const LitBoxes& lit_;
   double budget_;
@@ -238,7 +256,7 @@ Plan make_plan(const Scene& scene, Workers workers) {
   for (std::size_t m = 0; m < found.size(); ++m) {
     const LitBoxes lit(scene, scene.materials[m]);
     MaterialPlan of_material =
-        MaterialPlanner(scene.materials[m], lit, plan.brightest, scene.tolerance, workers).plan();
+        MaterialPlanner(scene, scene.materials[m], lit, plan.brightest, workers).plan();
     for (LeftOut& out : of_material.left_out) out.bound /= plan.brightest;
     of_material.bound /= plan.brightest;
     of_material.brightest = found[m].reached;

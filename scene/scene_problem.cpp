@@ -106,6 +106,11 @@ std::optional<SceneProblem> find_problem(const Scene& scene) {
                           number_text(scene.rotations_deg[k]), "finite numbers"};
     }
   }
+  if (const std::size_t count = scene.reach().combinations(); count > kMostCombinations) {
+    return SceneProblem{"/rotations_deg",
+                        std::to_string(count) + " combinations of a light, an eye and a rotation",
+                        "at most " + std::to_string(kMostCombinations)};
+  }
   bool mirrors = false;
   for (const Material& material : scene.materials)
     mirrors = mirrors || mirrors_at_grazing(material);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "table/reached_cells.h"
+
 namespace clothbrdf {
 namespace {
 
@@ -80,12 +82,15 @@ void count(Flaw& flaw, const TableValue& found, bool worse) {
 
 void check_values(const Table& table, TableCheck& check) {
   const TableSpec& spec = table.spec();
+  std::vector<std::uint8_t> reached(spec.cell_count(), 1);
+  if (spec.reach) ReachedCells(spec.grid(), *spec.reach).restrict(reached);
   for (std::size_t cell = 0; cell < spec.cell_count(); ++cell) {
     const bool above = spec.node_above_horizon(cell);
     const bool below = spec.has_grid() ? !spec.grid().any_above_horizon(cell) : !above;
     check.below_horizon += below;
     check.valid += table.valid(cell) ? 1U : 0U;
-    check.masked += above && !table.valid(cell);
+    check.masked += above && reached[cell] != 0 && !table.valid(cell);
+    check.not_reached += above && reached[cell] == 0;
     for (std::size_t c = 0; c < spec.channels.size(); ++c) {
       const TableValue found{cell, c, table.value(cell, c)};
       if (!std::isfinite(found.value)) {
@@ -118,7 +123,7 @@ TableCheck check_table(const Table& table, const Workers& workers) {
   check.cells = table.spec().cell_count();
   check_values(table, check);
   check.reciprocity = check_reciprocity(table);
-  check.albedo = albedo_by_theta(table, workers);
+  if (!table.spec().reach) check.albedo = albedo_by_theta(table, workers);
   return check;
 }
 

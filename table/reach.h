@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 namespace clothbrdf {
@@ -30,7 +31,12 @@ struct Reach {
   std::vector<DirectionRange> eyes;
   std::vector<double> rotations_deg = {0};
 
+  std::size_t combinations() const { return lights.size() * eyes.size() * rotations_deg.size(); }
+
   bool operator==(const Reach&) const = default;
 };
+
+/// Most combinations of a light, an eye and a rotation.
+inline constexpr std::size_t kMostCombinations = 10000;
 
 }  // namespace clothbrdf

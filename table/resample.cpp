@@ -54,9 +54,10 @@ Table tabulated(const Table& source, const Samples& samples, const Workers& work
   spec.samples = samples;
   spec.cells = {};  // whatever the source's cells were: values are taken at nodes
   spec.provenance.error.reset();
+  // Where a scene does not reach nothing is known, either.
+  const double mark = spec.provenance.material && !spec.reach ? 0 : kNotMeasured;
+  if (!spec.has_grid()) spec.reach.reset();
   const std::size_t columns = spec.column_count();
-  // A computed table has no cells that were not measured.
-  const double mark = spec.provenance.material ? 0 : kNotMeasured;
   std::vector<double> values(spec.cell_count() * spec.channels.size());
   std::vector<std::uint8_t> valid(spec.cell_count());
   if (workers.progress != nullptr) workers.progress->begin(what, spec.cell_count(), "cells");
@@ -181,6 +182,7 @@ TablePairs::TablePairs(const Table& table, bool isotropic)
     : table_(table), spec_(table.spec()), rotations_(isotropic ? rotation_count(table.spec()) : 1) {
   spec_.samples = AnyPairs{isotropic};
   spec_.cells = {};
+  spec_.reach.reset();
 }
 
 void TablePairs::fill_rows(std::size_t /*none*/, std::span<double> /*none*/) const {

@@ -10,7 +10,7 @@ namespace clothbrdf {
 /// A table at other samples, a grid or a list of pairs, by Table::interpolate; the same table where
 /// the samples are equal. Cells are valid where the node is above the horizon and the source says
 /// something there; the others hold 0 below the horizon and, above it, 0 in a table of a known
-/// material, else kNotMeasured.
+/// material that has no reach, else kNotMeasured.
 ///
 /// - Isotropic samples of an anisotropic source hold the mean over rotations of the cloth, as many
 ///   as the source has azimuths (rotation_count).

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "table/nearest_sample.h"
+#include "table/reached_cells.h"
 #include "table/stencil.h"
 
 namespace clothbrdf {
@@ -94,9 +95,12 @@ double Table::value(std::size_t cell, std::size_t channel) const {
   return values_[(cell / columns * spec_.channels.size() + channel) * columns + cell % columns];
 }
 
-std::vector<std::uint8_t> cells_above_horizon(const TableSpec& spec) {
+std::vector<std::uint8_t> cells_with_values(const TableSpec& spec) {
   if (!spec.has_grid()) return std::vector<std::uint8_t>(spec.cell_count(), 1);
-  return spec.grid().above_horizon(spec.cells.average ? CellPart::kAny : CellPart::kNode);
+  std::vector<std::uint8_t> cells =
+      spec.grid().above_horizon(spec.cells.average ? CellPart::kAny : CellPart::kNode);
+  if (spec.reach) ReachedCells(spec.grid(), *spec.reach).restrict(cells);
+  return cells;
 }
 
 void mask_not_measured(const TableSpec& spec, std::span<const double> values,
@@ -133,7 +137,7 @@ Table collect(const Producer& producer, Workers workers) {
     std::copy(rows.begin(), rows.end(),
               values.begin() + static_cast<std::ptrdiff_t>(first_row * spec.row_values()));
   });
-  return {spec, std::move(values), cells_above_horizon(spec)};
+  return {spec, std::move(values), cells_with_values(spec)};
 }
 
 }  // namespace clothbrdf

@@ -79,9 +79,9 @@ class Table final : public Producer {
   std::shared_ptr<const Interpolant> interpolant_;
 };
 
-/// Which cells of a table made from a material hold a value: those above the horizon (all, for a
-/// list of pairs).
-std::vector<std::uint8_t> cells_above_horizon(const TableSpec& spec);
+/// Which cells of a table made from a material hold a value, 1 or 0 each: those above the horizon
+/// that its reach holds (all, for a list of pairs).
+std::vector<std::uint8_t> cells_with_values(const TableSpec& spec);
 
 /// A negative value in any channel is the mark of a cell that was not measured, as in MERL's files;
 /// written as this.

@@ -9,6 +9,7 @@
 #include "model/effects.h"
 #include "model/material.h"
 #include "table/grid.h"
+#include "table/reach.h"
 #include "table/sampled_error.h"
 
 namespace clothbrdf {
@@ -85,6 +86,9 @@ struct TableSpec {
   std::vector<Channel> channels;
   CellRule cells;
   Provenance provenance;
+  /// Of a grid: the directions that its cells are for. Those that it does not reach, by
+  /// ReachedCells, hold 0 and say nothing; all count where it is left out.
+  std::optional<Reach> reach = {};
 
   bool has_grid() const { return std::holds_alternative<Grid>(samples); }
   bool has_pairs() const { return std::holds_alternative<PairList>(samples); }

@@ -52,12 +52,6 @@ HalfDifferenceAverage::HalfDifferenceAverage(const TableSpec& spec, const ClothM
   }
 }
 
-void HalfDifferenceAverage::fill_rows(std::size_t first_row, std::span<double> values) const {
-  for (std::size_t at = 0; at < values.size(); at += spec_.row_values()) {
-    fill_row(first_row++, values.subspan(at, spec_.row_values()));
-  }
-}
-
 std::vector<double> HalfDifferenceAverage::densities(double theta_h, std::size_t row) const {
   std::vector<double> density(paths_->lobe_count());
   if (spec_.grid().kind == GridKind::kHalfDifference3d) {
@@ -146,7 +140,8 @@ std::vector<HalfDifferenceAverage::Panel> HalfDifferenceAverage::make_panels(
   return panels;
 }
 
-void HalfDifferenceAverage::fill_row(std::size_t row, std::span<double> values) const {
+void HalfDifferenceAverage::fill_row(std::size_t row, std::span<const ColumnRange> columns,
+                                     std::span<double> values) const {
   const std::size_t channels = spec_.channels.size();
   const auto phi_count = static_cast<std::size_t>(phi_d_axis_.size);
   const std::size_t half = (phi_count + 1) / 2;  // the other cells are mirror images
@@ -157,6 +152,11 @@ void HalfDifferenceAverage::fill_row(std::size_t row, std::span<double> values) 
   const std::vector<Panel> panels = make_panels(row);
   const std::size_t block = channels * kPolynomialNodes * kPolynomialNodes;
   for (int d = 0; d < theta_d_axis_.size; ++d) {
+    const std::size_t at = static_cast<std::size_t>(d) * phi_count;
+    const bool wanted = std::any_of(columns.begin(), columns.end(), [&](const ColumnRange& range) {
+      return range.begin < at + phi_count && range.end > at;
+    });
+    if (!wanted) continue;
     std::vector<CellSums> sums(half, {0, std::vector<double>(channels, 0.0)});
     const double low = theta_d_axis_.edge_deg(d) * kRadian;
     const double width =

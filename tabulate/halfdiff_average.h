@@ -21,7 +21,8 @@ namespace clothbrdf {
 class HalfDifferenceAverage final : public Kernel {
  public:
   HalfDifferenceAverage(const TableSpec& spec, const ClothModel<double>& model, Workers workers);
-  void fill_rows(std::size_t first_row, std::span<double> values) const override;
+  void fill_row(std::size_t row, std::span<const ColumnRange> columns,
+                std::span<double> values) const override;
 
  private:
   // The directional part of all channels over a piece of a row's theta_h cell and all theta_d
@@ -39,7 +40,6 @@ class HalfDifferenceAverage final : public Kernel {
   Panel make_panel(std::size_t row, double low, double high) const;
   bool interpolates(const Panel& panel, std::size_t row) const;
   std::vector<Panel> make_panels(std::size_t row) const;
-  void fill_row(std::size_t row, std::span<double> values) const;
 
   const TableSpec& spec_;
   const ClothModel<double>& model_;

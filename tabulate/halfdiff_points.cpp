@@ -1,5 +1,7 @@
 #include "tabulate/halfdiff_points.h"
 
+#include <algorithm>
+
 #include "tabulate/vectorise.h"
 
 namespace clothbrdf {
@@ -10,6 +12,16 @@ std::vector<SinCos<double>> node_sincos(const Axis& axis) {
   nodes.reserve(static_cast<std::size_t>(axis.size));
   for (int k = 0; k < axis.size; ++k) nodes.push_back(sincosd(axis.node_deg(k)));
   return nodes;
+}
+
+// Of rows of `size` columns those that hold a range of columns.
+std::vector<SinCos<double>> rows_of(const std::vector<SinCos<double>>& rows,
+                                    const ColumnRange& columns, std::size_t size) {
+  const auto row = [&](std::size_t column) {
+    return rows.begin() + static_cast<std::ptrdiff_t>(column / size);
+  };
+  return {row(columns.begin), columns.end > columns.begin ? row(columns.end - 1) + 1
+                                                          : row(columns.begin)};
 }
 
 std::vector<double> cosines(const std::vector<SinCos<double>>& angles) {
@@ -44,21 +56,17 @@ CLOTHBRDF_VECTORISE void fill_values(const double* factor, const double* above, 
 }  // namespace
 
 HalfDifferencePoints::HalfDifferencePoints(const TableSpec& spec, const ClothModel<double>& model,
-                                           Workers workers)
+                                           ColumnRange all, Workers workers)
     : spec_(spec),
       model_(model),
       theta_d_(node_sincos(spec.grid().axes[spec.grid().axes.size() - 2])),
       cos_phi_d_(cosines(node_sincos(spec.grid().axes.back()))),
       folded_(spec.grid().folds_orders()),
-      paths_(model, cosines(theta_d_), workers) {}
+      first_theta_d_(all.begin / cos_phi_d_.size()),
+      paths_(model, cosines(rows_of(theta_d_, all, cos_phi_d_.size())), workers) {}
 
-void HalfDifferencePoints::fill_rows(std::size_t first_row, std::span<double> values) const {
-  for (std::size_t at = 0; at < values.size(); at += spec_.row_values()) {
-    fill_row(first_row++, values.subspan(at, spec_.row_values()));
-  }
-}
-
-void HalfDifferencePoints::fill_row(std::size_t row, std::span<double> values) const {
+void HalfDifferencePoints::fill_row(std::size_t row, std::span<const ColumnRange> columns,
+                                    std::span<double> values) const {
   const std::vector<Axis>& axes = spec_.grid().axes;
   std::vector<double> density(paths_.lobe_count());
   SinCos<double> theta_h;
@@ -72,19 +80,26 @@ void HalfDifferencePoints::fill_row(std::size_t row, std::span<double> values) c
         axes[1].node_deg(static_cast<int>(row % phi_count)), model_.material().rotation_deg));
     paths_.densities(theta_h.sin * phi_h.cos, theta_h.sin * phi_h.sin, theta_h.cos, density);
   }
-  ChannelSums sums(model_, theta_d_.size());
-  paths_.sums(density, 0, sums.specular(), sums.internal());
-
   const std::size_t count = cos_phi_d_.size();
+  const std::size_t first = columns.front().begin / count;
+  ChannelSums sums(model_, (columns.back().end - 1) / count + 1 - first);
+  paths_.sums(density, first - first_theta_d_, sums.specular(), sums.internal());
+
   std::vector<double> factor(count);
   std::vector<double> above(count);
-  for (std::size_t d = 0; d < theta_d_.size(); ++d) {
-    fill_factors(model_.material().reflectance, model_.effects().shadowing, folded_, theta_h,
-                 theta_d_[d], cos_phi_d_.data(), count, factor.data(), above.data());
-    for (std::size_t c = 0; c < spec_.channels.size(); ++c) {
-      const Channel& channel = spec_.channels[c];
-      fill_values(factor.data(), above.data(), count, sums.directional(channel, d),
-                  sums.constant(channel), values.data() + (c * theta_d_.size() + d) * count);
+  for (const ColumnRange& range : columns) {
+    for (std::size_t at = range.begin; at < range.end;) {
+      const std::size_t d = at / count;
+      const std::size_t begin = at - d * count;
+      const std::size_t some = std::min(range.end - at, count - begin);
+      fill_factors(model_.material().reflectance, model_.effects().shadowing, folded_, theta_h,
+                   theta_d_[d], cos_phi_d_.data() + begin, some, factor.data(), above.data());
+      for (std::size_t c = 0; c < spec_.channels.size(); ++c) {
+        const Channel& channel = spec_.channels[c];
+        fill_values(factor.data(), above.data(), some, sums.directional(channel, d - first),
+                    sums.constant(channel), values.data() + c * spec_.column_count() + at);
+      }
+      at += some;
     }
   }
 }

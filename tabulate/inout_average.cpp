@@ -85,36 +85,42 @@ std::optional<std::size_t> InOutAverage::coarse_variable(const Box4& part) const
   return static_cast<std::size_t>(widest - width.begin());
 }
 
-void InOutAverage::fill_rows(std::size_t first_row, std::span<double> values) const {
-  const std::size_t columns = spec_.column_count();
-  const std::size_t channels = spec_.channels.size();
-  Workspace work(channels);
-  for (std::size_t i = 0; i < values.size() / spec_.row_values() * columns; ++i) {
-    const std::array<int, 4> index = spec_.grid().indices(first_row * columns + i);
-    Box4 box{};
-    double measure = 1;
-    for (std::size_t a = 0; a < 4; ++a) {
-      const Axis& axis = spec_.grid().axes[a];
-      box.low[a] = axis.edge_deg(index[a]) * kRadian;
-      box.high[a] = axis.edge_deg(index[a] + 1) * kRadian;
-      const bool elevation = a % 2 == 0;
-      measure *=
-          elevation ? std::cos(box.low[a]) - std::cos(box.high[a]) : box.high[a] - box.low[a];
-    }
-    const std::optional<std::vector<double>> integral = integrate4(
-        [&](std::span<const Point4> points, std::span<double> f) { weighted(points, work, f); },
-        box, channels, spec_.cells.tolerance,
-        [&](const Box4& part) { return coarse_variable(part); });
-    if (!integral) {
-      throw WorkError("--cells average: the lobes are too narrow for cells of " +
-                      spec_.grid().description() + " at a relative tolerance of " +
-                      number_text(spec_.cells.tolerance) +
-                      "; take a finer grid, a looser tolerance or --cells point");
-    }
-    for (std::size_t c = 0; c < channels; ++c) {
-      values[(i / columns * channels + c) * columns + i % columns] = (*integral)[c] / measure;
+void InOutAverage::fill_row(std::size_t row, std::span<const ColumnRange> columns,
+                            std::span<double> values) const {
+  Workspace work(spec_.channels.size());
+  for (const ColumnRange& range : columns) {
+    for (std::size_t column = range.begin; column < range.end; ++column) {
+      const std::vector<double> means = cell_means(row * spec_.column_count() + column, work);
+      for (std::size_t c = 0; c < means.size(); ++c) {
+        values[c * spec_.column_count() + column] = means[c];
+      }
     }
   }
+}
+
+std::vector<double> InOutAverage::cell_means(std::size_t cell, Workspace& work) const {
+  const std::array<int, 4> index = spec_.grid().indices(cell);
+  Box4 box{};
+  double measure = 1;
+  for (std::size_t a = 0; a < 4; ++a) {
+    const Axis& axis = spec_.grid().axes[a];
+    box.low[a] = axis.edge_deg(index[a]) * kRadian;
+    box.high[a] = axis.edge_deg(index[a] + 1) * kRadian;
+    const bool elevation = a % 2 == 0;
+    measure *= elevation ? std::cos(box.low[a]) - std::cos(box.high[a]) : box.high[a] - box.low[a];
+  }
+  std::optional<std::vector<double>> integral = integrate4(
+      [&](std::span<const Point4> points, std::span<double> f) { weighted(points, work, f); }, box,
+      spec_.channels.size(), spec_.cells.tolerance,
+      [&](const Box4& part) { return coarse_variable(part); });
+  if (!integral) {
+    throw WorkError("--cells average: the lobes are too narrow for cells of " +
+                    spec_.grid().description() + " at a relative tolerance of " +
+                    number_text(spec_.cells.tolerance) +
+                    "; take a finer grid, a looser tolerance or --cells point");
+  }
+  for (double& mean : *integral) mean /= measure;
+  return *std::move(integral);
 }
 
 }  // namespace clothbrdf

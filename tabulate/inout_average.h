@@ -15,10 +15,12 @@ namespace clothbrdf {
 class InOutAverage final : public Kernel {
  public:
   InOutAverage(const TableSpec& spec, const ClothModel<double>& model, Workers workers);
-  void fill_rows(std::size_t first_row, std::span<double> values) const override;
+  void fill_row(std::size_t row, std::span<const ColumnRange> columns,
+                std::span<double> values) const override;
 
  private:
   struct Workspace;
+  std::vector<double> cell_means(std::size_t cell, Workspace& work) const;
   void weighted(std::span<const Point4> points, Workspace& work, std::span<double> values) const;
   std::optional<std::size_t> coarse_variable(const Box4& part) const;
 

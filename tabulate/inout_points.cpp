@@ -17,19 +17,36 @@ InOutPoints::Side<T>::Side(const TableSpec& spec, const ClothModel<double>& mode
 }
 
 template <class T>
-void InOutPoints::Side<T>::fill_row(const Vector3<double>& wi, std::size_t channels,
-                                    std::span<double> values) const {
-  const std::size_t columns = wo[0].size();
+void InOutPoints::Side<T>::fill_row(const Vector3<double>& wi, std::span<const ColumnRange> columns,
+                                    std::size_t channels, std::span<double> values) const {
+  std::size_t count = 0;
+  for (const ColumnRange& range : columns) count += range.end - range.begin;
   std::array<std::vector<T>, 3> same;
-  for (std::size_t k = 0; k < 3; ++k) same[k].assign(columns, static_cast<T>(wi[k]));
-  std::vector<T> f(columns * channels);
+  std::array<std::vector<T>, 3> joined;
+  std::array<const T*, 3> to_eye;
+  for (std::size_t k = 0; k < 3; ++k) {
+    same[k].assign(count, static_cast<T>(wi[k]));
+    to_eye[k] = wo[k].data() + columns.front().begin;
+    if (columns.size() == 1) continue;
+    joined[k].reserve(count);
+    for (const ColumnRange& range : columns) {
+      joined[k].insert(joined[k].end(), wo[k].begin() + static_cast<std::ptrdiff_t>(range.begin),
+                       wo[k].begin() + static_cast<std::ptrdiff_t>(range.end));
+    }
+    to_eye[k] = joined[k].data();
+  }
+  std::vector<T> f(count * channels);
   std::vector<T*> to;
-  for (std::size_t c = 0; c < channels; ++c) to.push_back(f.data() + c * columns);
-  evaluator.evaluate({{same[0].data(), same[1].data(), same[2].data()},
-                      {wo[0].data(), wo[1].data(), wo[2].data()},
-                      columns},
-                     to);
-  std::copy(f.begin(), f.end(), values.begin());
+  for (std::size_t c = 0; c < channels; ++c) to.push_back(f.data() + c * count);
+  evaluator.evaluate({{same[0].data(), same[1].data(), same[2].data()}, to_eye, count}, to);
+  auto from = f.cbegin();
+  for (std::size_t c = 0; c < channels; ++c) {
+    for (const ColumnRange& range : columns) {
+      const auto some = static_cast<std::ptrdiff_t>(range.end - range.begin);
+      std::copy_n(from, some, values.data() + c * wo[0].size() + range.begin);
+      from += some;
+    }
+  }
 }
 
 InOutPoints::InOutPoints(const TableSpec& spec, const ClothModel<double>& model,
@@ -40,19 +57,15 @@ InOutPoints::InOutPoints(const TableSpec& spec, const ClothModel<double>& model,
                 ? decltype(side_)(std::in_place_type<Side<float>>, spec, model, workers)
                 : decltype(side_)(std::in_place_type<Side<double>>, spec, model, workers)) {}
 
-void InOutPoints::fill_rows(std::size_t first_row, std::span<double> values) const {
+void InOutPoints::fill_row(std::size_t row, std::span<const ColumnRange> columns,
+                           std::span<double> values) const {
+  workers_.check();
   const std::vector<Axis>& axes = spec_.grid().axes;
   const auto azimuths = static_cast<std::size_t>(axes[1].size);
-  for (std::size_t at = 0; at < values.size(); at += spec_.row_values(), ++first_row) {
-    workers_.check();
-    const Vector3<double> wi = direction(axes[0].node_deg(static_cast<int>(first_row / azimuths)),
-                                         axes[1].node_deg(static_cast<int>(first_row % azimuths)));
-    std::visit(
-        [&](const auto& side) {
-          side.fill_row(wi, spec_.channels.size(), values.subspan(at, spec_.row_values()));
-        },
-        side_);
-  }
+  const Vector3<double> wi = direction(axes[0].node_deg(static_cast<int>(row / azimuths)),
+                                       axes[1].node_deg(static_cast<int>(row % azimuths)));
+  std::visit(
+      [&](const auto& side) { side.fill_row(wi, columns, spec_.channels.size(), values); }, side_);
 }
 
 }  // namespace clothbrdf

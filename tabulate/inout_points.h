@@ -15,14 +15,16 @@ class InOutPoints final : public Kernel {
  public:
   InOutPoints(const TableSpec& spec, const ClothModel<double>& model, Precision precision,
               Workers workers);
-  void fill_rows(std::size_t first_row, std::span<double> values) const override;
+  void fill_row(std::size_t row, std::span<const ColumnRange> columns,
+                std::span<double> values) const override;
 
  private:
   /// Outgoing directions of a row, one array a coordinate.
   template <class T>
   struct Side {
     Side(const TableSpec& spec, const ClothModel<double>& model, Workers workers);
-    void fill_row(const Vector3<double>& wi, std::size_t channels, std::span<double> values) const;
+    void fill_row(const Vector3<double>& wi, std::span<const ColumnRange> columns,
+                  std::size_t channels, std::span<double> values) const;
 
     BatchEvaluator<T> evaluator;
     std::array<std::vector<T>, 3> wo;

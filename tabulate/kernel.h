@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "model/reflectance.h"
+#include "table/reached_cells.h"
 #include "table/table_spec.h"
 
 namespace clothbrdf {
@@ -15,11 +16,15 @@ enum class Precision {
             ///< (batch.h), unless lobes are too narrow (floats_do)
 };
 
-/// Values of whole rows of one kind of grid: the grid's part of a Producer.
+/// Values of one kind of grid: the grid's part of a Producer.
 class Kernel {
  public:
   virtual ~Kernel() = default;
-  virtual void fill_rows(std::size_t first_row, std::span<double> values) const = 0;
+
+  /// A row's values[channel][column] in some ranges of columns, at least one; others may be left as
+  /// they are. The same bits whichever other columns are asked for.
+  virtual void fill_row(std::size_t row, std::span<const ColumnRange> columns,
+                        std::span<double> values) const = 0;
 };
 
 /// The narrowest lobe axis of both yarns.

@@ -1,5 +1,7 @@
 #include "tabulate/model_producer.h"
 
+#include <algorithm>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -20,6 +22,7 @@ class ModelProducer final : public Producer {
  public:
   ModelProducer(const TableSpec& spec, Workers workers, Precision precision)
       : spec_(spec), model_(*spec.provenance.material, spec.provenance.effects) {
+    if (spec_.reach) reached_.emplace(spec_.grid(), *spec_.reach);
     if (!spec_.has_grid()) {
       pairs_ = std::make_unique<PairEvaluator>(spec_, model_, precision, workers);
     } else if (spec_.grid().kind == GridKind::kInOut) {
@@ -33,7 +36,8 @@ class ModelProducer final : public Producer {
     } else if (spec_.cells.average) {
       kernel_ = std::make_unique<HalfDifferenceAverage>(spec_, model_, workers);
     } else {
-      kernel_ = std::make_unique<HalfDifferencePoints>(spec_, model_, workers);
+      kernel_ = std::make_unique<HalfDifferencePoints>(
+          spec_, model_, reached_ ? reached_->columns() : all_columns(), workers);
     }
   }
 
@@ -41,7 +45,10 @@ class ModelProducer final : public Producer {
 
   void fill_rows(std::size_t first_row, std::span<double> values) const override {
     if (kernel_) {
-      kernel_->fill_rows(first_row, values);
+      const std::size_t size = spec_.row_values();
+      for (std::size_t at = 0; at < values.size(); at += size) {
+        fill_row(first_row++, values.subspan(at, size));
+      }
       return;
     }
     const std::size_t rows = values.size() / spec_.row_values();
@@ -59,8 +66,31 @@ class ModelProducer final : public Producer {
   }
 
  private:
+  ColumnRange all_columns() const { return {0, spec_.column_count()}; }
+
+  void fill_row(std::size_t row, std::span<double> values) const {
+    if (!reached_) {
+      const ColumnRange all = all_columns();
+      kernel_->fill_row(row, {&all, 1}, values);
+      return;
+    }
+    const std::span<const ColumnRange> columns = reached_->row(row);
+    if (!columns.empty()) kernel_->fill_row(row, columns, values);
+    const std::size_t count = spec_.column_count();
+    for (std::size_t c = 0; c < spec_.channels.size(); ++c) {
+      double* const of_channel = values.data() + c * count;
+      std::size_t from = 0;
+      for (const ColumnRange& range : columns) {
+        std::fill(of_channel + from, of_channel + range.begin, 0.0);
+        from = range.end;
+      }
+      std::fill(of_channel + from, of_channel + count, 0.0);
+    }
+  }
+
   TableSpec spec_;
   ClothModel<double> model_;
+  std::optional<ReachedCells> reached_;   // where the spec does not ask for all cells
   std::unique_ptr<Kernel> kernel_;        // of grids
   std::unique_ptr<PairEvaluator> pairs_;  // of all other samples
 };
@@ -78,6 +108,7 @@ TableSpec material_spec(const Material& material, const Effects& effects, const 
 void check_producible(const TableSpec& spec) {
   if (!spec.provenance.material) throw InputError("the table names no material to compute it from");
   check_material(*spec.provenance.material);
+  if (spec.reach && !spec.has_grid()) throw InputError("a reach is for the cells of a grid");
   for (const Channel& channel : spec.channels) {
     if (channel.colour >= spec.provenance.material->channel_count()) {
       throw InputError("channel " + full_name(channel) + " is not one of the material's");

@@ -275,10 +275,10 @@ TEST_CASE("a table's metadata is not looked at") {
   spec.provenance.material = cloth(99);
   spec.provenance.program = "another";
   const Table other(spec, {table.values().begin(), table.values().end()},
-                    cells_above_horizon(spec));
+                    cells_with_values(spec));
   TableSpec bare = table.spec();
   bare.provenance = {};
-  const Table none(bare, {table.values().begin(), table.values().end()}, cells_above_horizon(bare));
+  const Table none(bare, {table.values().begin(), table.values().end()}, cells_with_values(bare));
   const FitOptions options = quick_options(truth);
   const std::vector<double> bits = bits_of(fit_table(table, options, 1));
   CHECK(bits_of(fit_table(other, options, 1)) == bits);

@@ -13,7 +13,7 @@ namespace clothbrdf::test {
 inline Table plain_table(const Grid& grid, const std::function<double(std::size_t)>& value,
                          StoredPrecision precision = {}) {
   TableSpec spec{grid, {{"R", Part::kTotal, 0}}, {}, {}};
-  std::vector<std::uint8_t> valid = cells_above_horizon(spec);
+  std::vector<std::uint8_t> valid = cells_with_values(spec);
   std::vector<double> values(spec.cell_count());
   for (std::size_t cell = 0; cell < values.size(); ++cell) {
     if (valid[cell] != 0) values[cell] = value(cell);

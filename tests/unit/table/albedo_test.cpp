@@ -135,7 +135,7 @@ TEST_CASE("cells without a measurement take no part in an albedo, any number of 
   const Table whole = lambertian(halfdiff4d(8, 4, 8, 8), 0.5);
   std::vector<double> values(whole.values().begin(), whole.values().end());
   for (std::size_t cell = 0; cell < values.size(); cell += 7) values[cell] = kNotMeasured;
-  std::vector<std::uint8_t> valid = cells_above_horizon(whole.spec());
+  std::vector<std::uint8_t> valid = cells_with_values(whole.spec());
   mask_not_measured(whole.spec(), values, valid);
   const Table masked(whole.spec(), values, valid);
   const std::vector<Albedo> one = albedo_by_theta(masked, 1);

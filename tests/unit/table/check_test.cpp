@@ -101,7 +101,7 @@ TEST_CASE("cells above the horizon that are marked as not valid are counted") {
   const TableSpec& spec = clean.spec();
   std::vector<double> values(clean.values().begin(), clean.values().end());
   values[3] = values[4] = values[cell_below(spec.grid())] = kNotMeasured;
-  std::vector<std::uint8_t> valid = cells_above_horizon(spec);
+  std::vector<std::uint8_t> valid = cells_with_values(spec);
   mask_not_measured(spec, values, valid);
   const TableCheck check = check_table({spec, values, valid}, 1);
   CHECK(check.masked == 2);
@@ -180,7 +180,7 @@ TEST_CASE("rounding to half floats is no reciprocity break, ten times as much is
   for (const double v : exact.values()) {
     values.push_back(v * (1 + (random.chance(0.5) ? 1 : -1) * kHalf.relative));
   }
-  const std::vector<std::uint8_t> valid = cells_above_horizon(exact.spec());
+  const std::vector<std::uint8_t> valid = cells_with_values(exact.spec());
   const Table rounded(exact.spec(), values, valid, kHalf);
   CHECK(!check_table(rounded, 1).reciprocity_broken());
   CHECK(check_table({exact.spec(), values, valid}, 1).reciprocity_broken());
@@ -191,7 +191,7 @@ TEST_CASE("rounding to half floats is no reciprocity break, ten times as much is
 TEST_CASE("the smallest numbers of a file may be a step apart, not two") {
   const Table exact = preset_table("silk", kAround);
   std::vector<double> values(exact.values().size(), 3 * kHalf.step);
-  const std::vector<std::uint8_t> valid = cells_above_horizon(exact.spec());
+  const std::vector<std::uint8_t> valid = cells_with_values(exact.spec());
   const Table tiny(exact.spec(), values, valid, kHalf);
   CHECK(!check_table(with_value(tiny, 1, 0, 4 * kHalf.step), 1).reciprocity_broken());
   CHECK(check_table(with_value(tiny, 1, 0, 5 * kHalf.step), 1).reciprocity_broken());
@@ -200,7 +200,7 @@ TEST_CASE("the smallest numbers of a file may be a step apart, not two") {
 TEST_CASE("the tolerance of averages is allowed for") {
   TableSpec spec = preset_table("silk", kAround).spec();
   const std::vector<double> values(spec.cell_count() * spec.channels.size(), 0.1);
-  const std::vector<std::uint8_t> valid = cells_above_horizon(spec);
+  const std::vector<std::uint8_t> valid = cells_with_values(spec);
   spec.cells = {.average = true, .tolerance = 0.01};
   const Table even(spec, values, valid);
   CHECK(!check_table(with_value(even, 1, 0, 0.1 * 1.015), 1).reciprocity_broken());

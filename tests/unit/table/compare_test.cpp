@@ -149,7 +149,7 @@ TEST_CASE("channels are matched by name, whatever their order") {
   blue.channels = {{"B", Part::kTotal, 2}};
   std::vector<double> values;
   for (std::size_t cell = 0; cell < blue.cell_count(); ++cell) values.push_back(b.value(cell, 2));
-  const Comparison only_blue = compare(b, {blue, values, cells_above_horizon(blue)}, 1);
+  const Comparison only_blue = compare(b, {blue, values, cells_with_values(blue)}, 1);
   REQUIRE(only_blue.channels.size() == 1);
   CHECK(only_blue.channels[0].channel == "B");
   CHECK(only_blue.channels[0].max == 0);
@@ -160,7 +160,7 @@ TEST_CASE("tables with no channel or no cell in common are refused") {
   TableSpec spec = red.spec();
   spec.channels = {{"550nm", Part::kTotal, 0}};
   const std::vector<double> values(red.values().begin(), red.values().end());
-  const Table other(spec, values, cells_above_horizon(spec));
+  const Table other(spec, values, cells_with_values(spec));
   CHECK_THROWS_AS(compare(red, other, 1), InputError);
   const Table empty(red.spec(), values, std::vector<std::uint8_t>(values.size()));
   CHECK_THROWS_AS(compare(red, empty, 1), InputError);
@@ -171,7 +171,7 @@ TEST_CASE("cells that only the first table has are counted, and take no other pa
   const Table a = lambertian(halfdiff3d(6, 6, 6), 0.5);
   const Table whole = lambertian(halfdiff3d(6, 6, 6), 0.5);
   std::vector<double> values(whole.values().begin(), whole.values().end());
-  std::vector<std::uint8_t> valid = cells_above_horizon(whole.spec());
+  std::vector<std::uint8_t> valid = cells_with_values(whole.spec());
   const auto all = static_cast<std::size_t>(std::count(valid.begin(), valid.end(), 1));
   values[1] = kNotMeasured;
   valid[1] = 0;

@@ -166,7 +166,7 @@ TEST_CASE("where nothing was measured around, cells hold the mark above the hori
   const Table whole = lambertian(halfdiff3d(12, 12, 12), 0.5);
   const Grid& grid = whole.spec().grid();
   std::vector<double> values(whole.values().begin(), whole.values().end());
-  std::vector<std::uint8_t> valid = cells_above_horizon(whole.spec());
+  std::vector<std::uint8_t> valid = cells_with_values(whole.spec());
   for (std::size_t cell = 0; cell < values.size(); ++cell) {
     if (grid.indices(cell)[1] < 6) values[cell] = kNotMeasured;  // theta_d below 45 degrees
   }
@@ -195,7 +195,7 @@ TEST_CASE("a node at a cell without a measurement takes nothing from its neighbo
   const Table whole = lambertian(inout(4, 6, 4, 6), 0.5);
   const Grid& grid = whole.spec().grid();
   std::vector<double> values(whole.values().begin(), whole.values().end());
-  std::vector<std::uint8_t> valid = cells_above_horizon(whole.spec());
+  std::vector<std::uint8_t> valid = cells_with_values(whole.spec());
   for (std::size_t cell = 0; cell < values.size(); cell += 5) values[cell] = kNotMeasured;
   mask_not_measured(whole.spec(), values, valid);
   const Grid target = inout(4, 12, 4, 12);

@@ -249,9 +249,9 @@ TEST_CASE("cancelled in mid-stream, the work ends there and the caller is told")
 
 TEST_CASE("cells above the horizon: by their node for point values, by any part for averages") {
   TableSpec spec{halfdiff3d(), {{"R", Part::kTotal, 0}}, {}, {}};
-  const std::vector<std::uint8_t> points = cells_above_horizon(spec);
+  const std::vector<std::uint8_t> points = cells_with_values(spec);
   spec.cells.average = true;
-  const std::vector<std::uint8_t> parts = cells_above_horizon(spec);
+  const std::vector<std::uint8_t> parts = cells_with_values(spec);
   std::size_t more = 0;
   for (std::size_t cell = 0; cell < points.size(); ++cell) {
     if (points[cell] != 0) CHECK(parts[cell] != 0);
