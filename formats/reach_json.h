@@ -7,7 +7,7 @@
 
 namespace clothbrdf {
 
-// Internal to formats/: how scenes, plans and tables write directions, in degrees.
+// How scenes, plans and tables write directions, in degrees.
 
 /// {"lights": [{"theta_deg": [0, 30], "phi_deg": [0, 360]}], "eyes": [...], "rotations_deg": [0]}
 nlohmann::ordered_json reach_to_json(const Reach& reach);

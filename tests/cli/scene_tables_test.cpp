@@ -1,15 +1,14 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <sstream>
 
 #include "formats/format.h"
-#include "formats/material_json.h"
-#include "formats/plan_json.h"
-#include "model/reflectance.h"
+#include "preview/sheet.h"
+#include "table/reached_cells.h"
 #include "tests/catch.h"
 #include "tests/support/commands.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/read_picture.h"
+#include "tests/support/small_scene.h"
 
 namespace clothbrdf::test {
 namespace {
@@ -17,33 +16,6 @@ namespace {
 using nlohmann::json;
 
 const std::filesystem::path kScenes = CLOTHBRDF_SOURCE_DIR "/examples/scenes";
-
-// A light and an eye that hardly move: planned at once.
-json small_scene(const std::vector<std::string>& names) {
-  json scene = {{"name", "small"},
-                {"lights", {{{"theta_deg", 30}, {"phi_deg", {0, 10}}, {"radiance", {3, 2, 1}}}}},
-                {"eyes", {{{"theta_deg", {20, 25}}, {"phi_deg", 180}}}},
-                {"tolerance", 0}};  // no bounds: sanitizers take minutes for them
-  for (const std::string& name : names) {
-    json material = json::parse(read_file(preset("silk")));
-    material["name"] = name;
-    scene["materials"].push_back(material);
-  }
-  return scene;
-}
-
-std::string written(const TemporaryFolder& folder, const json& scene,
-                    const std::string& name = "scene.json") {
-  write_file(folder / name, scene.dump());
-  return (folder / name).string();
-}
-
-std::string refusal(const Arguments& arguments) {
-  const Outcome outcome = run_program(arguments);
-  CAPTURE(arguments);
-  CHECK(not_a_refusal(outcome, 2) == "");
-  return outcome.err;
-}
 
 std::set<std::string> tables(const TemporaryFolder& folder) {
   std::set<std::string> names;
@@ -146,6 +118,11 @@ TEST_CASE("what is wrong with a scene or its use is told in one line by the fiel
       with("/tolerence", 0.1).starts_with("/tolerence: unknown key (did you mean \"tolerance\"?)"));
   CHECK(with("/rotations_deg", std::vector<double>(1025)).starts_with("/rotations_deg: "));
   CHECK(!std::filesystem::exists(table));
+
+  json grazing = small_scene({"warp"});
+  grazing["lights"][0] = grazing["eyes"][0] = {{"theta_deg", {0, 90}}};
+  CHECK_THAT(refusal({"plan", written(folder, grazing)}),
+             ContainsSubstring("scene.json: /eyes/0/theta_deg: "));
 }
 
 TEST_CASE("a scene has at most 10000 combinations of a light, an eye and a rotation") {
@@ -154,8 +131,8 @@ TEST_CASE("a scene has at most 10000 combinations of a light, an eye and a rotat
   scene["rotations_deg"] = std::vector<double>(100);
   scene["eyes"] = std::vector<json>(101, scene["eyes"][0]);
   CHECK_THAT(refusal({"plan", written(folder, scene)}),
-             ContainsSubstring("scene.json: /rotations_deg: 100 with 1 lights and 101 eyes is not "
-                               "allowed: at most 10000 combinations"));
+             ContainsSubstring("scene.json: /rotations_deg: 10100 combinations of a light, an eye "
+                               "and a rotation is not allowed: at most 10000"));
 }
 
 TEST_CASE("without anisotropy a table is isotropic wherever the format can hold that") {
@@ -174,56 +151,77 @@ TEST_CASE("without anisotropy a table is isotropic wherever the format can hold 
   CHECK(spec("d.bin", {}).grid() == inout());  // UTIA has no other
 }
 
-TEST_CASE("eval --plan evaluates each cloth of a plan with the effects of its own") {
+TEST_CASE("a table for a scene has the bits of the whole table where the scene reaches") {
   const TemporaryFolder folder;
-  Plan plan{"two", 0.1, 1, 1, 0, {}, {{{{0, 60}, {0, 360}}}, {{{0, 60}, {0, 360}}}, {0}}};
-  Effects shallow;
-  shallow.layers = 1;
-  shallow.scatter = false;
-  Effects surface;
-  surface.internal = surface.diffuse = false;
-  surface.shadowing = false;
-  plan.materials = {{read_material(preset("silk")), shallow, {}, {}, 0, 1, {}},
-                    {read_material(preset("tamamushi")), surface, {}, {}, 0, 1, {}}};
-  const std::string file = (folder / "plan.json").string();
-  write_file(file, plan_to_json(plan));
-  const DirectionPair pair{30, 10, 45, 200};
-  for (const MaterialPlan& material : plan.materials) {
-    const std::string name = preset(material.material.name).string();
-    const Outcome outcome =
-        run_program({"eval", name, "--plan", file}, {.input = "30 10 45 200\n"});
-    CAPTURE(name, outcome.err);
-    REQUIRE(outcome.exit_code == 0);
-    const json f = json::parse(outcome.out)["f_r"];
-    const Components expected =
-        ClothModel<double>(material.material, material.effects).evaluate(pair_geometry(pair, 0.0));
-    CHECK(f["specular"].get<std::vector<double>>() == expected.specular);
-    CHECK(f["internal"].get<std::vector<double>>() == expected.internal);
-    CHECK(f["diffuse"].get<std::vector<double>>() == expected.diffuse);
+  json scene = small_scene({"silk"});
+  scene["lights"][0]["theta_deg"] = {10, 60};
+  const std::string file = written(folder, scene);
+  const std::string of_scene = (folder / "scene.exr").string();
+  const std::string of_cloth = (folder / "cloth.exr").string();
+  for (const char* grid : {"halfdiff4d:12x8x12x8", "inout:4x12x4x12", "halfdiff3d:18x18x18"}) {
+    output_of({"tabulate", file, "-o", of_scene, "--grid", grid});
+    output_of({"tabulate", preset("silk").string(), "-o", of_cloth, "--grid", grid});
+    const Table part = format_for(of_scene).read(of_scene);
+    const Table whole = format_for(of_cloth).read(of_cloth);
+    REQUIRE(part.spec().reach);
+    std::vector<std::uint8_t> reached(part.spec().cell_count(), 1);
+    ReachedCells(part.spec().grid(), *part.spec().reach).restrict(reached);
+    std::size_t same = 0;
+    std::size_t zero = 0;
+    for (std::size_t cell = 0; cell < reached.size(); ++cell) {
+      const bool is_reached = reached[cell] != 0;
+      CHECK(part.valid(cell) == (is_reached && whole.valid(cell)));
+      for (std::size_t c = 0; c < 3; ++c) {
+        REQUIRE(part.value(cell, c) == (is_reached ? whole.value(cell, c) : 0));
+      }
+      (is_reached ? same : zero) += 1;
+    }
+    INFO(grid);
+    CHECK(same > 0);
+    CHECK(zero > 0);
   }
-  CHECK(refusal({"eval", preset("linen").string(), "--plan", file}) ==
-        "clothbrdf: " + preset("linen").string() + ": is no material of " + file +
-            ", which plans: silk, tamamushi\n");
-  CHECK_THAT(refusal({"eval", preset("silk").string(), "--plan", file, "--effects", "specular"}),
-             ContainsSubstring("--effects: not with --plan"));
 }
 
-TEST_CASE("plan writes what it prints, refuses other endings and its own scene") {
+TEST_CASE("commands that read a table know which cells are for the scene") {
   const TemporaryFolder folder;
-  const std::string scene = written(folder, small_scene({"warp", "weft"}));
-  const std::string file = (folder / "plan.json").string();
-  const std::string text = output_of({"plan", scene, "-o", file});
-  CHECK(output_of({"plan", scene, "--json"}) == read_file(file));
-  CHECK(output_of({"plan", scene, "--threads", "1"}) == text);
-  for (const char* part :
-       {"small\n  tolerance ", "\n  brightest ", " reached, at most ", "\n  bound ",
-        "\n  material    warp\n", "\n  material    weft\n", "\n  kept ", "\n  saving "}) {
-    CHECK_THAT(text, ContainsSubstring(part));
+  const std::string file = written(folder, small_scene({"silk"}));
+  const std::string table = (folder / "t.exr").string();
+  const std::string grid = "halfdiff3d:30x30x60";
+  const std::string said = output_of({"tabulate", file, "-o", table, "--grid", grid});
+  const json info = json_of({"info", table});
+  const auto reached = info["cells"]["reached"].get<std::size_t>();
+  CHECK(info["cells"]["valid"] <= reached);
+  CHECK(reached < info["cells"]["all"]);
+  CHECK(info["reach"]["eyes"][0]["theta_deg"] == json{20, 25});
+  CHECK_THAT(said, ContainsSubstring(" cells are for the scene, the others hold 0)"));
+
+  const json check = json_of({"check", table});
+  CHECK(check["masked"] == 0);
+  CHECK(check["not_reached"] > 0);
+  CHECK(check["albedo"].empty());
+  CHECK(check["problems"].empty());
+  CHECK_THAT(output_of({"check", table}), ContainsSubstring("cells above the horizon are not for"));
+
+  const std::string picture = (folder / "t.png").string();
+  output_of(
+      {"preview", table, "-o", picture, "--size", "32", "--light", "30,0", "--eye", "22,180"});
+  const std::vector<std::uint8_t> codes = read_png(picture).values;
+  std::size_t blue = 0;
+  for (std::size_t p = 0; p + 2 < codes.size(); p += 3) {
+    blue += codes[p + 2] > 100 && 2 * codes[p] < codes[p + 2] ? 1 : 0;
   }
-  CHECK_THAT(refusal({"plan", scene, "-o", scene}), ContainsSubstring("is also read"));
-  CHECK_THAT(refusal({"plan", scene, "-o", (folder / "plan.txt").string()}),
-             ContainsSubstring("the ending '.txt' is not allowed: .json"));
-  CHECK_THAT(refusal({"plan", preset("silk").string()}), ContainsSubstring("silk.json: /"));
+  CHECK(blue > 100);
+
+  // A format without a description cannot mark them, and says so.
+  const std::string merl = (folder / "t.binary").string();
+  CHECK_THAT(output_of({"tabulate", file, "-o", merl}),
+             ContainsSubstring("which this format cannot tell from values"));
+  output_of({"convert", table, (folder / "u.alta").string()});
+  CHECK(json_of({"info", (folder / "u.alta").string()})["cells"] == info["cells"]);
+  CHECK_THAT(json_of({"convert", table, merl})["lost"].dump(), ContainsSubstring("-1, the mark"));
+  CHECK_THAT(
+      json_of({"convert", table, (folder / "u.bsdf").string(), "--size", "100000"})["lost"].dump(),
+      ContainsSubstring("the scene: no longer told apart"));
 }
 
 }  // namespace clothbrdf::test

@@ -274,8 +274,7 @@ TEST_CASE("a table's metadata is not looked at") {
   TableSpec spec = table.spec();
   spec.provenance.material = cloth(99);
   spec.provenance.program = "another";
-  const Table other(spec, {table.values().begin(), table.values().end()},
-                    cells_with_values(spec));
+  const Table other(spec, {table.values().begin(), table.values().end()}, cells_with_values(spec));
   TableSpec bare = table.spec();
   bare.provenance = {};
   const Table none(bare, {table.values().begin(), table.values().end()}, cells_with_values(bare));
@@ -283,6 +282,26 @@ TEST_CASE("a table's metadata is not looked at") {
   const std::vector<double> bits = bits_of(fit_table(table, options, 1));
   CHECK(bits_of(fit_table(other, options, 1)) == bits);
   CHECK(bits_of(fit_table(none, options, 1)) == bits);
+}
+
+TEST_CASE("of a table made for a scene only the cells that it reaches are fitted") {
+  const Material truth = cloth(5);
+  TableSpec spec = material_spec(truth, {}, halfdiff4d(14, 9, 14, 12));
+  const Table whole = collect(*make_producer(spec, 1), 1);
+  spec.reach = Reach{{{{0, 60}, {0, 90}}}, {{{0, 70}, {0, 360}}}, {0}};
+  const Table part = collect(*make_producer(spec, 1), 1);
+  const FitReport of_whole = fit_table(whole, warm_options(truth), 1);
+  const FitReport of_part = fit_table(part, warm_options(truth), 1);
+  double worst = 0;
+  for (const ParameterEstimate& p : of_part.parameters) {
+    if (is_fitted(p.verdict))
+      worst = std::max(worst, std::abs(p.value - parameter(of_whole, p.name).value));
+  }
+  std::cout << "fit of a scene's cells: " << of_part.values << " of " << of_whole.values
+            << " values, off by at most " << worst << ", residual " << of_part.residual_rms << '\n';
+  CHECK(of_part.values < of_whole.values);
+  CHECK(of_part.residual_rms < 1e-6);
+  CHECK(worst < 1e-4);
 }
 
 }  // namespace clothbrdf::test
