@@ -15,6 +15,8 @@ import sys
 import tempfile
 import time
 
+import effects
+
 SOURCE = pathlib.Path(__file__).resolve().parent.parent
 MATERIAL = str(SOURCE / "materials" / "silk.json")
 SHOT_SILK = str(SOURCE / "materials" / "tamamushi.json")
@@ -232,12 +234,12 @@ def print_report(result):
             if who in figure:
                 label = f"{who}, {name.split(', ')[1]}" if who != "start_up" else "--version"
                 print(f"{label:32}" + "".join(f"{time_ms:12.1f}" for time_ms in figure[who].values()))
-    print(f"\n{'figure':32}{'value':>12}    {'limit':>12}")
+    print(f"\n{'figure':48}{'value':>12}    {'limit':>12}")
     for name, figure in result["figures"].items():
         bound = f"{figure['limit']:12g}" if "limit" in figure else f">={figure.get('at_least', 0):10g}"
         limit = f"{bound}  {'met' if figure['met'] else 'MISSED'}" if "met" in figure else ""
         at_most = " (or less)" if figure["value"] <= 1.02 * figure.get("least_measurable", 0) else ""
-        print(f"{name:32}{figure['value']:12.4g} {figure['unit']:3}{limit}{at_most}".rstrip())
+        print(f"{name:48}{figure['value']:12.4g} {figure['unit']:3}{limit}{at_most}".rstrip())
     missed = [name for name, figure in result["figures"].items() if not figure.get("met", True)]
     print("\n" + (f"limits missed: {'; '.join(missed)}" if missed else "all limits met"))
     if result["file_system"] in ("tmpfs", "ramfs"):
@@ -253,7 +255,8 @@ def main():
     with tempfile.TemporaryDirectory(dir=build / "bench") as folder:
         figures = {"computing silk.binary, one core": compute, **kernel_figures(measured),
                    **whole_processes(str(build / "clothbrdf"), pathlib.Path(folder)),
-                   **fits(str(build / "clothbrdf"), pathlib.Path(folder))}
+                   **fits(str(build / "clothbrdf"), pathlib.Path(folder)),
+                   **effects.figures(build, SOURCE / "examples" / "scenes", pathlib.Path(folder))}
     for figure in figures.values():
         if "limit" in figure:
             figure["met"] = figure["value"] <= figure["limit"]

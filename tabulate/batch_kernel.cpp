@@ -27,12 +27,12 @@ struct Block {
   HWY_ALIGN T weft2[kBlock];  // the half vector's squared components
   HWY_ALIGN T warp2[kBlock];
   HWY_ALIGN T normal2[kBlock];
-  HWY_ALIGN T place[kBlock];   // in the piece, -1 to 1; of surfaces cos_theta_d
-  HWY_ALIGN T factor[kBlock];  // directional factor times h_n, 0 below the horizon
-  HWY_ALIGN T above[kBlock];   // 1, or 0 below the horizon
-  HWY_ALIGN hwy::MakeUnsigned<T> piece[kBlock];
-  HWY_ALIGN T sum[3][kBlock];  // over the lanes, of the sums at work
-  HWY_ALIGN T none[kBlock];    // sums of channels without direction: 0
+  HWY_ALIGN T place[kBlock];                   // in the piece, -1 to 1; of surfaces cos_theta_d
+  HWY_ALIGN T factor[kBlock];                  // directional factor times h_n, 0 below the horizon
+  HWY_ALIGN T above[kBlock];                   // 1, or 0 below the horizon
+  HWY_ALIGN hwy::MakeUnsigned<T> row[kBlock];  // where the coefficients of its piece start
+  HWY_ALIGN T sum[3][kBlock];                  // over the lanes, of the sums at work
+  HWY_ALIGN T none[kBlock];                    // sums of channels without direction: 0
 };
 
 /// What the lanes of kBlock pairs share: lanes over pairs.
@@ -50,6 +50,7 @@ void prepare(const BatchPlan<T>& plan, const DirectionArrays<T>& in, Block<T>& b
   const int shift = kMantissa - plan.piece_bits;
   const auto first_piece =
       hn::ShiftRightSame(hn::BitCast(du, hn::Set(d, static_cast<T>(kWeightShift))), shift);
+  const auto row_size = hn::Set(du, static_cast<hwy::MakeUnsigned<T>>(plan.row_size));
   const auto mantissa = hn::Set(du, (hwy::MakeUnsigned<T>{1} << shift) - 1);
   for (std::size_t p = 0; p < kBlock; p += n) {
     const auto load = [&](const T* from) { return hn::LoadU(d, from + p); };
@@ -95,7 +96,15 @@ void prepare(const BatchPlan<T>& plan, const DirectionArrays<T>& in, Block<T>& b
     const auto in_piece = hn::ShiftLeftSame(hn::And(bits, mantissa), plan.piece_bits);
     const auto from_one = hn::BitCast(d, hn::Or(in_piece, hn::BitCast(du, one)));
     hn::Store(hn::MulAdd(hn::Set(d, T(2)), from_one, hn::Set(d, T(-3))), d, block.place + p);
-    hn::Store(hn::Sub(hn::ShiftRightSame(bits, shift), first_piece), du, block.piece + p);
+    const auto piece = hn::Sub(hn::ShiftRightSame(bits, shift), first_piece);
+    if constexpr (sizeof(T) == sizeof(float)) {
+      hn::Store(hn::Mul(piece, row_size), du, block.row + p);
+    } else {  // few processors multiply such integers in vectors
+      hn::Store(piece, du, block.row + p);
+    }
+  }
+  if constexpr (sizeof(T) != sizeof(float)) {
+    for (hwy::MakeUnsigned<T>& row : block.row) row *= plan.row_size;
   }
 }
 
@@ -113,43 +122,93 @@ V lane_density(D d, V weft, V warp, V weft2, V warp2, V normal2) {
   }
 }
 
+/// As many pairs as 128 bits hold values: what is left of their sums is added up together.
+template <class T>
+inline constexpr std::size_t kGroup = 16 / sizeof(T);
+
+#if HWY_TARGET == HWY_SCALAR
+template <class D, class V, class T = hn::TFromD<D>>
+void store_sums(D /*one lane*/, const V (&v)[kGroup<T>], T* to) {
+  for (std::size_t g = 0; g < kGroup<T>; ++g) to[g] = hn::GetLane(v[g]);
+}
+#else
+/// Sums of the halves of two vectors' 128-bit blocks, side by side.
+template <class D, class V>
+V fold(D d, V a, V b) {
+  return hn::Add(hn::InterleaveLower(d, a, b), hn::InterleaveUpper(d, a, b));
+}
+
+/// The sum of each vector's lanes.
+template <class D, class V, class T = hn::TFromD<D>>
+void store_sums(D d, const V (&v)[kGroup<T>], T* to) {
+  V folded = fold(d, v[0], v[1]);
+  if constexpr (sizeof(T) == sizeof(float)) {
+    const hn::RepartitionToWide<D> wide;
+    const auto first = hn::BitCast(wide, folded);
+    const auto second = hn::BitCast(wide, fold(d, v[2], v[3]));
+    folded = hn::Add(hn::BitCast(d, hn::InterleaveLower(wide, first, second)),
+                     hn::BitCast(d, hn::InterleaveUpper(wide, first, second)));
+  }
+  const hn::FixedTag<T, kGroup<T>> group;
+  if constexpr (hn::MaxLanes(d) > kGroup<T>) {
+    hn::Store(hn::Add(hn::LowerHalf(group, folded), hn::UpperHalf(group, folded)), group, to);
+  } else {
+    hn::Store(folded, group, to);
+  }
+}
+#endif
+
 /// The sums over lanes for `count` pairs and kSums sums from `first` on, by polynomials of a
-/// degree: lanes over lobes.
-template <std::size_t kSums, int kDegree, bool kMean, class T>
+/// degree: lanes over lobes, in kVectors registers (0: in as many as it takes).
+template <std::size_t kSums, std::size_t kVectors, int kDegree, bool kMean, class T>
 void sum_lanes(const BatchPlan<T>& plan, std::size_t first, std::size_t count, Block<T>& block) {
   // Of 256 bits at most: adding up the lanes of wider ones costs more than they save.
   const hn::CappedTag<T, 32 / sizeof(T)> d;
+  using V = hn::Vec<decltype(d)>;
   const std::size_t n = hn::Lanes(d);
   constexpr std::size_t kPowers = kDegree + 1;
-  const std::size_t lanes = plan.lanes;
-  const T* const weft = plan.weft;
-  const T* const warp = plan.warp;
-  const std::size_t row_size = plan.sums * kPowers * lanes;
+  const std::size_t lanes = kVectors > 0 ? kVectors * n : plan.lanes;
   const T* const first_row = plan.coefficients + first * kPowers * lanes;
-  for (std::size_t p = 0; p < count; ++p) {
-    const auto weft2 = hn::Set(d, block.weft2[p]);
-    const auto warp2 = hn::Set(d, block.warp2[p]);
-    const auto normal2 = hn::Set(d, block.normal2[p]);
-    const auto place = hn::Set(d, block.place[p]);
-    const T* const row =
-        kDegree == 0 ? first_row : first_row + static_cast<std::size_t>(block.piece[p]) * row_size;
-    hn::Vec<decltype(d)> sum[kSums];
-    for (auto& s : sum) s = hn::Zero(d);
-    for (std::size_t lane = 0; lane < lanes; lane += n) {
-      const auto density = lane_density<kMean>(d, hn::Load(d, weft + lane),
-                                               hn::Load(d, warp + lane), weft2, warp2, normal2);
-      for (std::size_t c = 0; c < kSums; ++c) {
-        const T* const power = row + c * kPowers * lanes + lane;
-        auto weight = hn::Load(d, power + (kPowers - 1) * lanes);
-        for (std::size_t k = kPowers - 1; k-- > 0;) {
-          weight = hn::MulAdd(weight, place, hn::Load(d, power + k * lanes));
+  V weft[kVectors + 1];
+  V warp[kVectors + 1];
+  for (std::size_t v = 0; v < kVectors; ++v) {
+    weft[v] = hn::Load(d, plan.weft + v * n);
+    warp[v] = hn::Load(d, plan.warp + v * n);
+  }
+  for (std::size_t p = 0; p < count; p += kGroup<T>) {
+    V sums[kSums][kGroup<T>];
+    for (std::size_t g = 0; g < kGroup<T>; ++g) {
+      const auto weft2 = hn::Set(d, block.weft2[p + g]);
+      const auto warp2 = hn::Set(d, block.warp2[p + g]);
+      const auto normal2 = hn::Set(d, block.normal2[p + g]);
+      const auto place = hn::Set(d, block.place[p + g]);
+      const T* const row = kDegree == 0 ? first_row : first_row + block.row[p + g];
+      const auto add = [&](std::size_t lane, V density, bool is_first) {
+        for (std::size_t c = 0; c < kSums; ++c) {
+          const T* const power = row + c * kPowers * lanes + lane;
+          auto weight = hn::Load(d, power + (kPowers - 1) * lanes);
+          for (std::size_t k = kPowers - 1; k-- > 0;) {
+            weight = hn::MulAdd(weight, place, hn::Load(d, power + k * lanes));
+          }
+          sums[c][g] =
+              is_first ? hn::Mul(weight, density) : hn::MulAdd(weight, density, sums[c][g]);
         }
-        sum[c] = hn::MulAdd(weight, density, sum[c]);
+      };
+      if constexpr (kVectors > 0) {
+        for (std::size_t v = 0; v < kVectors; ++v) {
+          add(v * n, lane_density<kMean>(d, weft[v], warp[v], weft2, warp2, normal2), v == 0);
+        }
+      } else {
+        for (std::size_t c = 0; c < kSums; ++c) sums[c][g] = hn::Zero(d);
+        for (std::size_t lane = 0; lane < lanes; lane += n) {
+          const auto density =
+              lane_density<kMean>(d, hn::Load(d, plan.weft + lane), hn::Load(d, plan.warp + lane),
+                                  weft2, warp2, normal2);
+          add(lane, density, false);
+        }
       }
     }
-    for (std::size_t c = 0; c < kSums; ++c) {
-      block.sum[c][p] = hn::GetLane(hn::SumOfLanes(d, sum[c]));
-    }
+    for (std::size_t c = 0; c < kSums; ++c) store_sums(d, sums[c], block.sum[c] + p);
   }
 }
 
@@ -185,15 +244,30 @@ void sum_surfaces(const BatchPlan<T>& plan, Block<T>& block) {
   }
 }
 
+template <std::size_t kSums, int kDegree, bool kMean, class T>
+void sum_vectors(const BatchPlan<T>& plan, std::size_t first, std::size_t count, Block<T>& block) {
+  // Doubles need more registers than there are.
+  if constexpr (sizeof(T) == sizeof(float)) {
+    const hn::CappedTag<T, 32 / sizeof(T)> d;
+    switch (plan.lanes / hn::Lanes(d)) {
+      case 1: return sum_lanes<kSums, 1, kDegree, kMean>(plan, first, count, block);
+      case 2: return sum_lanes<kSums, 2, kDegree, kMean>(plan, first, count, block);
+      case 3: return sum_lanes<kSums, 3, kDegree, kMean>(plan, first, count, block);
+      default: break;
+    }
+  }
+  sum_lanes<kSums, 0, kDegree, kMean>(plan, first, count, block);
+}
+
 /// Three sums from `first` on where there are as many, else one. Returns how many.
 template <int kDegree, bool kMean, class T>
 std::size_t sum_some_lanes(const BatchPlan<T>& plan, std::size_t first, std::size_t count,
                            Block<T>& block) {
   if (first + 3 <= plan.sums) {
-    sum_lanes<3, kDegree, kMean>(plan, first, count, block);
+    sum_vectors<3, kDegree, kMean>(plan, first, count, block);
     return 3;
   }
-  sum_lanes<1, kDegree, kMean>(plan, first, count, block);
+  sum_vectors<1, kDegree, kMean>(plan, first, count, block);
   return 1;
 }
 
@@ -225,16 +299,17 @@ template <class T>
 void finish(const Block<T>& block, const T* sum, T constant, std::size_t count, T* values) {
   const hn::ScalableTag<T> d;
   const std::size_t n = hn::Lanes(d);
-  const auto value = [&](std::size_t p) {
-    return hn::MulAdd(hn::Load(d, block.factor + p), hn::Load(d, sum + p),
-                      hn::Mul(hn::Load(d, block.above + p), hn::Set(d, constant)));
+  const auto to_all = [&](T* to) {
+    for (std::size_t p = 0; p < kBlock; p += n) {
+      hn::StoreU(hn::MulAdd(hn::Load(d, block.factor + p), hn::Load(d, sum + p),
+                            hn::Mul(hn::Load(d, block.above + p), hn::Set(d, constant))),
+                 d, to + p);
+    }
   };
-  std::size_t p = 0;
-  for (; p + n <= count; p += n) hn::StoreU(value(p), d, values + p);
-  if (p == count) return;
-  HWY_ALIGN T rest[HWY_MAX_BYTES / sizeof(T)];
-  hn::Store(value(p), d, rest);
-  std::copy_n(rest, count - p, values + p);
+  if (count == kBlock) return to_all(values);
+  T rest[kBlock];
+  to_all(rest);
+  std::copy_n(rest, count, values);
 }
 
 /// Constants where both directions are above the horizon, 0 elsewhere: lanes over pairs.
@@ -242,21 +317,18 @@ template <class T>
 void fill_constants(const BatchPlan<T>& plan, const DirectionArrays<T>& in, T* const* values) {
   const hn::ScalableTag<T> d;
   const std::size_t n = hn::Lanes(d);
-  const auto above = [&](const T* wi_z, const T* wo_z) {
-    return hn::Gt(hn::Min(hn::LoadU(d, wi_z), hn::LoadU(d, wo_z)), hn::Zero(d));
-  };
-  std::size_t p = 0;
-  for (; p + n <= in.count; p += n) {
-    const auto visible = above(in.wi[2] + p, in.wo[2] + p);
-    for (const BatchOutput<T>& output : plan.outputs) {
-      hn::StoreU(hn::IfThenElseZero(visible, hn::Set(d, output.constant)), d,
-                 values[output.channel] + p);
+  const T* const wi_z = in.wi[2];
+  const T* const wo_z = in.wo[2];
+  for (const BatchOutput<T>& output : plan.outputs) {
+    T* const to = values[output.channel];
+    const auto constant = hn::Set(d, output.constant);
+    const std::size_t whole = in.count - in.count % n;
+    for (std::size_t p = 0; p < whole; p += n) {
+      const auto low = hn::Min(hn::LoadU(d, wi_z + p), hn::LoadU(d, wo_z + p));
+      hn::StoreU(hn::IfThenElseZero(hn::Gt(low, hn::Zero(d)), constant), d, to + p);
     }
-  }
-  for (; p < in.count; ++p) {
-    const bool visible = in.wi[2][p] > T(0) && in.wo[2][p] > T(0);
-    for (const BatchOutput<T>& output : plan.outputs) {
-      values[output.channel][p] = visible ? output.constant : T(0);
+    for (std::size_t p = whole; p < in.count; ++p) {
+      to[p] = wi_z[p] > T(0) && wo_z[p] > T(0) ? output.constant : T(0);
     }
   }
 }

@@ -18,7 +18,8 @@ struct BatchPlan {
   const T* coefficients;  ///< as WeightTable; kFixed: [sum][lane]; kSurface: [lane]
   const T* steepness;     ///< kSurface: (n - 1) (n + 1) of the refractive index, [lane]
   std::size_t lanes;
-  std::size_t sums;  ///< different sums over lanes
+  std::size_t sums;      ///< different sums over lanes
+  std::size_t row_size;  ///< kTable: coefficients of a piece
   int piece_bits;
   T turn_sin;  ///< of the weave's rotation
   T turn_cos;

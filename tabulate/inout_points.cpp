@@ -1,6 +1,7 @@
 #include "tabulate/inout_points.h"
 
 #include <algorithm>
+#include <memory>
 
 namespace clothbrdf {
 
@@ -35,11 +36,11 @@ void InOutPoints::Side<T>::fill_row(const Vector3<double>& wi, std::span<const C
     }
     to_eye[k] = joined[k].data();
   }
-  std::vector<T> f(count * channels);
+  const auto f = std::make_unique_for_overwrite<T[]>(count * channels);
   std::vector<T*> to;
-  for (std::size_t c = 0; c < channels; ++c) to.push_back(f.data() + c * count);
+  for (std::size_t c = 0; c < channels; ++c) to.push_back(f.get() + c * count);
   evaluator.evaluate({{same[0].data(), same[1].data(), same[2].data()}, to_eye, count}, to);
-  auto from = f.cbegin();
+  const T* from = f.get();
   for (std::size_t c = 0; c < channels; ++c) {
     for (const ColumnRange& range : columns) {
       const auto some = static_cast<std::ptrdiff_t>(range.end - range.begin);
@@ -64,8 +65,8 @@ void InOutPoints::fill_row(std::size_t row, std::span<const ColumnRange> columns
   const auto azimuths = static_cast<std::size_t>(axes[1].size);
   const Vector3<double> wi = direction(axes[0].node_deg(static_cast<int>(row / azimuths)),
                                        axes[1].node_deg(static_cast<int>(row % azimuths)));
-  std::visit(
-      [&](const auto& side) { side.fill_row(wi, columns, spec_.channels.size(), values); }, side_);
+  std::visit([&](const auto& side) { side.fill_row(wi, columns, spec_.channels.size(), values); },
+             side_);
 }
 
 }  // namespace clothbrdf

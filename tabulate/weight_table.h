@@ -29,9 +29,9 @@ inline constexpr double kWeightShift = 0x1p-8;
 /// Below this cos_theta_d errors are relative to the value at it.
 inline constexpr double kLeastCosine = 0x1p-12;
 
-/// Lanes of a vector register of 512 bits: narrower ones take several steps.
+/// Lanes of a vector register of 256 bits, the widest that sums over lanes use.
 template <class T>
-inline constexpr std::size_t kLanePadding = 64 / sizeof(T);
+inline constexpr std::size_t kLanePadding = 32 / sizeof(T);
 
 /// Degree of the polynomials.
 template <class T>
