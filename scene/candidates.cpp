@@ -140,7 +140,7 @@ double evaluation_cost(const Material& whole, const Effects& effects) {
   }
   if (yarns.size() == 2 && !effects.anisotropy && material.warp == material.weft) yarns.pop_back();
   // A few lobes stand for all of a yarn that scatters (model.md, section 8.3).
-  constexpr double kFewLobes = 8;
+  constexpr double kFewLobes = 7;
   double lanes = 0;
   double walking = 0;
   for (const Yarn* yarn : yarns) {
@@ -151,19 +151,19 @@ double evaluation_cost(const Material& whole, const Effects& effects) {
     const double events = paths.most_events > 0 ? 2 * lobes : 0;
     walking += yarn->layers * (1 + (paths.near_sides ? 1 : 0) + events);
   }
-  const bool inside = lanes > 0;
   const double surfaces = material.weights.specular > 0 ? static_cast<double>(yarns.size()) : 0;
-  if (lanes + surfaces == 0) return 1;
   const auto channels = static_cast<double>(material.channel_count());
-  const double sums = inside && !grey(material) ? channels : 1;
-  const double powers = effects.cos_theta_d ? 1 : 4;
-  constexpr double kGeometry = 10;
-  constexpr double kFresnel = 4;
-  constexpr double kOfPathSums = 1e-3;  // path sums are made once for many pairs
+  if (lanes + surfaces == 0) return channels;
   const double mean = effects.anisotropy ? 0 : 1;
-  if (!inside) return kGeometry + surfaces * (3 + mean + (effects.cos_theta_d ? 0 : kFresnel));
-  return kGeometry + (lanes + surfaces) * (3 + mean + sums * (powers + 1)) +
-         (effects.shadowing ? 1 : 0) + kOfPathSums * walking * sums;
+  const double geometry = 9 + 2 * channels;
+  if (lanes == 0) return geometry + surfaces * (4 + mean);
+  const double sums = grey(material) ? 1 : channels;
+  const double powers = effects.cos_theta_d ? 1 : 5;
+  constexpr double kLanesOfRegister = 8;
+  const double registers = std::ceil((lanes + surfaces) / kLanesOfRegister);
+  constexpr double kOfPathSums = 1e-3;  // path sums are made once for many pairs
+  return geometry + 6 + 3 * sums + registers * (4 + 3 * mean + sums * powers) +
+         (effects.shadowing ? 0.5 : 0) + kOfPathSums * walking * sums;
 }
 
 }  // namespace clothbrdf

@@ -26,8 +26,8 @@ std::vector<std::vector<Candidate>> candidates(const Material& whole, double mea
 /// Takes one more thing away.
 void leave_out(Effects& effects, const Candidate& candidate);
 
-/// Work to evaluate a pair of directions, and its share of what comes before all pairs, in
-/// multiply-adds: as the batch evaluator does it.
+/// Work to evaluate a pair of directions, and its share of what comes before all pairs: about the
+/// instructions of the batch evaluator, with vector registers of eight floats.
 double evaluation_cost(const Material& whole, const Effects& effects);
 
 /// The share of a table's cells that is left where anisotropy is off: no axis phi_h.

@@ -48,7 +48,8 @@ TableSpec for_scene(const Grid& grid) {
 TEST_CASE("tables made for a scene come back with their reach, values and marks") {
   const TemporaryFolder folder;
   for (const char* name : {"t.exr", "t.alta", "t.dat"}) {
-    for (const Grid& grid : {halfdiff4d(9, 8, 9, 9), halfdiff3d(9, 9, 18), inout(4, 12, 4, 12)}) {
+    for (const Grid& grid :
+         {halfdiff4d(18, 12, 18, 18), halfdiff3d(24, 24, 36), inout(5, 12, 5, 12)}) {
       const Table table = collect(*make_producer(for_scene(grid), 1), 1);
       write_table(table, folder / name);
       const Table back = format_for(folder / name).read(folder / name);
