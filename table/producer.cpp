@@ -14,7 +14,7 @@ namespace {
 
 // Large enough that files are written in pieces the system likes, small enough for the processor's
 // cache.
-constexpr std::size_t kBlockValues = 98000;
+constexpr std::size_t kBlockValues = 32000;
 // Blocks of slow cells take minutes: work is counted in smaller steps, and given up between them.
 constexpr std::size_t kStepValues = 256;
 

@@ -11,6 +11,7 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
+#include <limits>
 #include <vector>
 
 HWY_BEFORE_NAMESPACE();
@@ -74,9 +75,9 @@ void prepare(const BatchPlan<T>& plan, const DirectionArrays<T>& in, Block<T>& b
       factor = hn::Mul(hn::Div(factor, low), hn::Div(hn::Set(d, T(0.25)), high));
     } else if (plan.microfacet) {
       // min(1 / (2 low), h_n / x) / (2 high), model.md section 7; h_n / x = 2 h_z / length^2.
-      const auto unshadowed = hn::Div(half, low);
       const auto shadowed = hn::Mul(hn::Add(normal, normal), inverse);
-      factor = hn::Mul(hn::Mul(factor, hn::Min(unshadowed, shadowed)), hn::Div(half, high));
+      factor = hn::Mul(hn::Mul(factor, hn::Min(half, hn::Mul(shadowed, low))),
+                       hn::Div(half, hn::Mul(low, high)));
     } else {
       factor = hn::Div(factor, wi_z);
     }
@@ -108,18 +109,24 @@ void prepare(const BatchPlan<T>& plan, const DirectionArrays<T>& in, Block<T>& b
   }
 }
 
-/// 1 over the size of a lane's solid in the direction of the half vector; kMean: the mean over its
-/// azimuth, of h's squared components across the normal together.
-template <bool kMean, class D, class V>
-V lane_density(D d, V weft, V warp, V weft2, V warp2, V normal2) {
-  const auto one = hn::Set(d, static_cast<hn::TFromD<D>>(1));
+/// The size of a lane's solid in the direction of the half vector: densities are 1 over it. kMean:
+/// 1 over their mean over the half vector's azimuth, of its squared components across the normal
+/// together.
+template <bool kMean, class V>
+V lane_solid(V weft, V warp, V weft2, V warp2, V normal2) {
   if constexpr (kMean) {
     const auto across2 = hn::Add(weft2, warp2);
-    return hn::Div(one, hn::Sqrt(hn::Mul(hn::MulAdd(weft, across2, normal2),
-                                         hn::MulAdd(warp, across2, normal2))));
+    return hn::Sqrt(
+        hn::Mul(hn::MulAdd(weft, across2, normal2), hn::MulAdd(warp, across2, normal2)));
   } else {
-    return hn::Div(one, hn::MulAdd(weft, weft2, hn::MulAdd(warp, warp2, normal2)));
+    return hn::MulAdd(weft, weft2, hn::MulAdd(warp, warp2, normal2));
   }
+}
+
+template <bool kMean, class D, class V>
+V lane_density(D d, V weft, V warp, V weft2, V warp2, V normal2) {
+  return hn::Div(hn::Set(d, static_cast<hn::TFromD<D>>(1)),
+                 lane_solid<kMean>(weft, warp, weft2, warp2, normal2));
 }
 
 /// As many pairs as 128 bits hold values: what is left of their sums is added up together.
@@ -212,15 +219,26 @@ void sum_lanes(const BatchPlan<T>& plan, std::size_t first, std::size_t count, B
   }
 }
 
-/// fresnel()'s r for incidence cosines x; m = (n - 1) (n + 1) of the refractive index n.
+/// fresnel()'s r for incidence cosines x, as numerator and denominator, which take one division
+/// with what they are multiplied by; m = (n - 1) (n + 1) of the refractive index n. With q = x +
+/// sqrt(x^2
+/// + m) it is m^2 (q^2 (x q - 1)^2 + (x m + q)^2) / (2 q^4 (x m + q)^2).
+template <class V>
+struct Quotient {
+  V numerator;
+  V denominator;
+};
 template <class D, class V>
-V reflected(D d, V x, V m) {
-  const auto one = hn::Set(d, static_cast<hn::TFromD<D>>(1));
-  const auto half = hn::Set(d, static_cast<hn::TFromD<D>>(0.5));
+Quotient<V> reflected(D d, V x, V m) {
+  using T = hn::TFromD<D>;
   const auto q = hn::Add(hn::Sqrt(hn::MulAdd(x, x, m)), x);
-  const auto a = hn::Div(m, hn::Mul(q, q));
-  const auto b = hn::Div(hn::MulSub(x, q, one), hn::MulAdd(x, hn::Div(m, q), one));
-  return hn::Mul(hn::Mul(half, hn::Mul(a, a)), hn::MulAdd(b, b, one));
+  const auto a = hn::Mul(q, hn::MulSub(x, q, hn::Set(d, T(1))));
+  const auto b = hn::MulAdd(x, m, q);
+  const auto c = hn::Mul(hn::Mul(q, q), b);
+  const auto sum = hn::MulAdd(a, a, hn::Mul(b, b));
+  // With nothing to reflect, both may vanish.
+  const auto least = hn::Set(d, std::numeric_limits<T>::min());
+  return {hn::Mul(hn::Mul(m, m), hn::Mul(sum, hn::Set(d, T(0.5)))), hn::Max(hn::Mul(c, c), least)};
 }
 
 /// The sum over surface reflections: lanes over pairs, no table.
@@ -232,13 +250,16 @@ void sum_surfaces(const BatchPlan<T>& plan, Block<T>& block) {
     const auto load = [&](const T* from) { return hn::Load(d, from + p); };
     const auto x = load(block.place);
     auto sum = hn::Zero(d);
+    auto r = reflected(d, x, hn::Set(d, plan.steepness[0]));
     for (std::size_t lane = 0; lane < plan.lanes; ++lane) {
-      const auto density =
-          lane_density<kMean>(d, hn::Set(d, plan.weft[lane]), hn::Set(d, plan.warp[lane]),
-                              load(block.weft2), load(block.warp2), load(block.normal2));
-      const auto weight = hn::Mul(reflected(d, x, hn::Set(d, plan.steepness[lane])),
-                                  hn::Set(d, plan.coefficients[lane]));
-      sum = hn::MulAdd(weight, density, sum);
+      const auto solid =
+          lane_solid<kMean>(hn::Set(d, plan.weft[lane]), hn::Set(d, plan.warp[lane]),
+                            load(block.weft2), load(block.warp2), load(block.normal2));
+      if (lane > 0 && plan.steepness[lane] != plan.steepness[lane - 1]) {
+        r = reflected(d, x, hn::Set(d, plan.steepness[lane]));
+      }
+      const auto weight = hn::Mul(r.numerator, hn::Set(d, plan.coefficients[lane]));
+      sum = hn::Add(sum, hn::Div(weight, hn::Mul(r.denominator, solid)));
     }
     hn::Store(sum, d, block.sum[0] + p);
   }
@@ -312,25 +333,39 @@ void finish(const Block<T>& block, const T* sum, T constant, std::size_t count, 
   std::copy_n(rest, count, values);
 }
 
-/// Constants where both directions are above the horizon, 0 elsewhere: lanes over pairs.
-template <class T>
-void fill_constants(const BatchPlan<T>& plan, const DirectionArrays<T>& in, T* const* values) {
+/// Constants where both directions are above the horizon, 0 elsewhere, of kOutputs channels: lanes
+/// over pairs.
+template <std::size_t kOutputs, class T>
+void fill_constants(const BatchOutput<T>* outputs, const DirectionArrays<T>& in, T* const* values) {
   const hn::ScalableTag<T> d;
   const std::size_t n = hn::Lanes(d);
   const T* const wi_z = in.wi[2];
   const T* const wo_z = in.wo[2];
-  for (const BatchOutput<T>& output : plan.outputs) {
-    T* const to = values[output.channel];
-    const auto constant = hn::Set(d, output.constant);
-    const std::size_t whole = in.count - in.count % n;
-    for (std::size_t p = 0; p < whole; p += n) {
-      const auto low = hn::Min(hn::LoadU(d, wi_z + p), hn::LoadU(d, wo_z + p));
-      hn::StoreU(hn::IfThenElseZero(hn::Gt(low, hn::Zero(d)), constant), d, to + p);
-    }
-    for (std::size_t p = whole; p < in.count; ++p) {
-      to[p] = wi_z[p] > T(0) && wo_z[p] > T(0) ? output.constant : T(0);
+  T* to[kOutputs];
+  hn::Vec<decltype(d)> constant[kOutputs];
+  for (std::size_t k = 0; k < kOutputs; ++k) {
+    to[k] = values[outputs[k].channel];
+    constant[k] = hn::Set(d, outputs[k].constant);
+  }
+  const std::size_t whole = in.count - in.count % n;
+  for (std::size_t p = 0; p < whole; p += n) {
+    const auto low = hn::Min(hn::LoadU(d, wi_z + p), hn::LoadU(d, wo_z + p));
+    const auto visible = hn::Gt(low, hn::Zero(d));
+    for (std::size_t k = 0; k < kOutputs; ++k) {
+      hn::StoreU(hn::IfThenElseZero(visible, constant[k]), d, to[k] + p);
     }
   }
+  for (std::size_t p = whole; p < in.count; ++p) {
+    const bool visible = wi_z[p] > T(0) && wo_z[p] > T(0);
+    for (std::size_t k = 0; k < kOutputs; ++k) to[k][p] = visible ? outputs[k].constant : T(0);
+  }
+}
+
+template <class T>
+void fill_constants(const BatchPlan<T>& plan, const DirectionArrays<T>& in, T* const* values) {
+  std::size_t k = 0;
+  for (; k + 3 <= plan.outputs.size(); k += 3) fill_constants<3>(&plan.outputs[k], in, values);
+  for (; k < plan.outputs.size(); ++k) fill_constants<1>(&plan.outputs[k], in, values);
 }
 
 /// The pairs from `first` on, kBlock of them; after the last one directions on the horizon.
