@@ -7,6 +7,17 @@
 #include "support/errors.h"
 
 namespace clothbrdf {
+namespace {
+
+// Further digits depend on the processor, and the size of the file that states them would, too.
+double to_six_digits(double value) {
+  std::stringstream text;
+  text << std::setprecision(6) << value;
+  text >> value;
+  return value;
+}
+
+}  // namespace
 
 VerifiedSetting choose_verified(const FileOrder& order, const Target& target,
                                 const Workers& workers) {
@@ -18,7 +29,12 @@ VerifiedSetting choose_verified(const FileOrder& order, const Target& target,
     FileSetting setting = chooser.choose(aim);
     error = chooser.verify(written_and_read(order, setting, workers));
     const double reached = chooser.limited(error.error);
-    if (reached <= target.tolerance) return {std::move(setting), error};
+    if (reached <= target.tolerance) {
+      for (double* const figure : {&error.error.rms, &error.error.p99, &error.error.max}) {
+        *figure = to_six_digits(*figure);
+      }
+      return {std::move(setting), error};
+    }
     aim *= 0.99 * target.tolerance / reached;
   }
   std::ostringstream text;

@@ -161,7 +161,7 @@ double evaluation_cost(const Material& whole, const Effects& effects) {
   const double powers = effects.cos_theta_d ? 1 : 5;
   constexpr double kLanesOfRegister = 8;
   const double registers = std::ceil((lanes + surfaces) / kLanesOfRegister);
-  constexpr double kOfPathSums = 1e-3;  // path sums are made once for many pairs
+  constexpr double kOfPathSums = 1e-4;  // path sums are made once for many pairs
   return geometry + 6 + 3 * sums + registers * (4 + 3 * mean + sums * powers) +
          (effects.shadowing ? 0.5 : 0) + kOfPathSums * walking * sums;
 }
