@@ -34,7 +34,8 @@ def figures(build, scenes, folder):
         output(str(build / "clothbrdf"), "plan", str(scene), "-o", plans[-1])
     cases = output(bench, "list", *plans).splitlines()
     count = {case: instructions(bench, case, plans, folder) for case in cases}
-    seconds = json.loads(output(bench, "time", *plans))
+    timed = (line.split(maxsplit=1) for line in output(bench, "time", *plans).splitlines())
+    seconds = {case: float(taken) for taken, case in timed}
     result = {}
 
     def add(name, part, whole, limit=None):

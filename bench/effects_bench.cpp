@@ -2,7 +2,7 @@
 // without them; bench/effects.py says which limits the ratios have.
 //
 //   effects_bench count CASE [PLAN...]   runs a case once; callgrind counts just its work
-//   effects_bench time [PLAN...]         seconds of all cases, taken in turns, as JSON
+//   effects_bench time [PLAN...]         seconds of all cases, taken in turns, and their names
 //   effects_bench list [PLAN...]         the cases' names, one a line
 
 #include <valgrind/callgrind.h>
@@ -15,7 +15,6 @@
 #include <functional>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <random>
 #include <span>
@@ -185,12 +184,10 @@ void time(const std::vector<Case>& cases) {
       seconds[k].push_back(taken.count() / runs);
     }
   }
-  nlohmann::ordered_json medians;
   for (std::size_t k = 0; k < cases.size(); ++k) {
     std::nth_element(seconds[k].begin(), seconds[k].begin() + kRounds / 2, seconds[k].end());
-    medians[cases[k].name] = seconds[k][kRounds / 2];
+    std::cout << seconds[k][kRounds / 2] << ' ' << cases[k].name << '\n';
   }
-  std::cout << medians.dump() << '\n';
 }
 
 }  // namespace

@@ -212,11 +212,11 @@ std::optional<ChannelDifference> run_conversion(const Table& source, const Conve
   }
   const Table resampled = resample(from, target.samples, workers);
   if (const std::size_t count = not_measured(resampled); count > 0) {
-    conversion.lost.push_back(
-        with_commas(count) + " cells, which have no cell to be interpolated from: they hold " +
-        (resampled.spec().provenance.material && !source.spec().reach
-             ? "0"
-             : "-1, the mark of such cells"));
+    conversion.lost.push_back(with_commas(count) +
+                              " cells, which have no cell to be interpolated from: they hold " +
+                              (resampled.spec().provenance.material && !source.spec().reach
+                                   ? "0"
+                                   : "-1, the mark of such cells"));
   }
   conversion.compared_at = "at the old nodes";
   const ChannelDifference worst = worst_of(compare(from, resampled, workers));

@@ -85,8 +85,7 @@ TableOutput make_output(const TabulateOptions& options, const ClothTables& cloth
       cloth.material,     cloth.effects,
       options.components, &format,
       file.options,       options.isotropic || (!cloth.effects.anisotropy && !options.grid),
-      file.name,
-      cloth.reach};
+      file.name,          cloth.reach};
   output.plan = cloth.plan;
   const auto set = [&] {
     output.setting = {samples_of(options, output.order),

@@ -18,8 +18,8 @@ struct FileOrder {
   bool with_components = false;
   const Format* format = nullptr;
   WriteOptions options;
-  bool isotropic = false;  ///< the mean over rotations, where the format leaves the choice
-  std::string name;        ///< of the file; scratch files go beside it
+  bool isotropic = false;           ///< the mean over rotations, where the format leaves the choice
+  std::string name;                 ///< of the file; scratch files go beside it
   std::optional<Reach> reach = {};  ///< of a scene: what the cells of a grid are computed for
 };
 

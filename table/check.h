@@ -39,7 +39,7 @@ struct TableCheck {
   std::size_t cells = 0;
   std::size_t below_horizon = 0;  ///< wholly
   std::size_t valid = 0;
-  std::size_t masked = 0;  ///< above the horizon and in reach, marked as not valid
+  std::size_t masked = 0;       ///< above the horizon and in reach, marked as not valid
   std::size_t not_reached = 0;  ///< above the horizon, not for the table's scene
   Flaw not_finite;
   Flaw negative;        ///< in cells above the horizon: by their node or, of averages, by any part

@@ -216,9 +216,8 @@ class InOutMarker final : public Marker {
       for (const Block& p : blocks_of(phi, 1)) {
         const std::vector<Arc> arcs = arcs_of(phi, p);
         const bool meets = of_cell.meets(thetas) &&
-                           (pole || std::any_of(arcs.begin(), arcs.end(), [&](const Arc& arc) {
-                              return arc.meets(phis);
-                            }));
+                           (pole || std::any_of(arcs.begin(), arcs.end(),
+                                                [&](const Arc& arc) { return arc.meets(phis); }));
         cells.push_back(meets ? 1 : 0);
       }
     }

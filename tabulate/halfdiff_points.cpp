@@ -20,8 +20,8 @@ std::vector<SinCos<double>> rows_of(const std::vector<SinCos<double>>& rows,
   const auto row = [&](std::size_t column) {
     return rows.begin() + static_cast<std::ptrdiff_t>(column / size);
   };
-  return {row(columns.begin), columns.end > columns.begin ? row(columns.end - 1) + 1
-                                                          : row(columns.begin)};
+  return {row(columns.begin),
+          columns.end > columns.begin ? row(columns.end - 1) + 1 : row(columns.begin)};
 }
 
 std::vector<double> cosines(const std::vector<SinCos<double>>& angles) {

@@ -16,14 +16,18 @@ namespace {
 
 std::vector<Grid> grids() {
   Grid chosen = halfdiff4d(8, 6, 7, 5);
-  chosen.axes[0] = {"theta_h", Spacing::kListed, 8,     0,
-                    90,        false,            false, {0, 2, 5, 10, 20, 35, 60, 85}};
+  chosen.axes[0] = {
+      "theta_h", Spacing::kListed, 8, 0, 90, false, false, {0, 2, 5, 10, 20, 35, 60, 85}};
   chosen.axes[1] = {"phi_h", Spacing::kListed, 6, 30, 120, false, true, {32, 40, 60, 80, 100, 115}};
   chosen.axes[3] = {"phi_d", Spacing::kListed, 5, 0, 90, false, true, {5, 20, 45, 70, 85}};
-  return {halfdiff3d(20, 20, 30), halfdiff3d(11, 9, 14, 360),
-          halfdiff4d(12, 9, 12, 8), halfdiff4d(7, 5, 6, 8, 360),
-          inout(),                  inout(5, 9, 7, 4),
-          inout(6, 1, 6, 24),       chosen};
+  return {halfdiff3d(20, 20, 30),
+          halfdiff3d(11, 9, 14, 360),
+          halfdiff4d(12, 9, 12, 8),
+          halfdiff4d(7, 5, 6, 8, 360),
+          inout(),
+          inout(5, 9, 7, 4),
+          inout(6, 1, 6, 24),
+          chosen};
 }
 
 std::vector<std::uint8_t> marks(const Grid& grid, const Reach& reach) {
