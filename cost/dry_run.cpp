@@ -105,7 +105,10 @@ Prediction predict_file(const FileOrder& order, const FileSetting& setting,
     prediction.error.error = error_of(cells, exact, workers);
     prediction.error.reader = reader == Reader::kNearest ? "nearest" : "linear";
   } else {
-    const Table table = written_and_read(order, setting, workers);
+    // Pairs are drawn from all directions, so all cells are needed.
+    FileOrder whole = order;
+    whole.reach.reset();
+    const Table table = written_and_read(whole, setting, workers);
     prediction.error.error = error_of(table, reader, exact, workers);
     prediction.error.reader = reader_name(table, reader);
   }

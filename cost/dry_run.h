@@ -10,7 +10,8 @@ namespace clothbrdf {
 struct Prediction {
   double seconds = 0;
   std::uint64_t bytes = 0;
-  MeasuredError error;       ///< of tables without phi_h against the mean over rotations
+  MeasuredError error;       ///< of tables without phi_h against the mean over rotations; of a
+                             ///< scene's table as if it held all cells
   double isotropy_loss = 0;  ///< rms between that mean and the cloth; of other tables 0
 };
 
