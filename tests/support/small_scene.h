@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/catch.h"
 #include "tests/support/run_program.h"
 #include "tests/support/temporary_folder.h"
 
