@@ -49,7 +49,10 @@ std::vector<std::string> what_is_lost(const Table& source, const Conversion& con
   std::vector<std::string> lost;
   if (!from.provenance.note.empty()) lost.push_back("before: " + from.provenance.note);
   if (averages_rotations(from, to)) {
-    lost.emplace_back("anisotropy: the mean over rotations of the cloth");
+    lost.emplace_back(from.reach
+                          ? "anisotropy: the mean over those rotations of the cloth that the "
+                            "scene reaches"
+                          : "anisotropy: the mean over rotations of the cloth");
   }
   const auto& material = from.provenance.material;
   const bool reciprocal = material && material->reflectance == Reflectance::kMicrofacet;
@@ -77,7 +80,7 @@ std::vector<std::string> what_is_lost(const Table& source, const Conversion& con
          << " of the value, or by " << stored.step / 2 << " where that is more";
     lost.push_back(text.str());
   }
-  if (from.reach && !(format.keeps_description && to.has_grid())) {
+  if (from.reach && (!to.has_grid() || (!format.keeps_description && from.samples == to.samples))) {
     lost.emplace_back(
         "the scene: no longer told apart are cells that it does not reach, which hold 0");
   }

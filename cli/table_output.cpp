@@ -17,11 +17,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// "1,234 of 5,678 cells are for the scene".
+// "1,234 cells are for the scene, the others hold 0".
 std::string reach_note(const TableSpec& spec, const Format& format) {
   if (!spec.reach) return "";
   const std::size_t reached = ReachedCells(spec.grid(), *spec.reach).count();
-  if (reached == spec.cell_count()) return "";
+  TableSpec whole = spec;
+  whole.reach.reset();
+  if (cells_with_values(whole) == cells_with_values(spec)) return "";
   return with_commas(reached) + " cells are for the scene, the others hold 0" +
          (format.keeps_description ? "" : ", which this format cannot tell from values");
 }

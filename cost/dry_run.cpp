@@ -105,9 +105,9 @@ Prediction predict_file(const FileOrder& order, const FileSetting& setting,
     prediction.error.error = error_of(cells, exact, workers);
     prediction.error.reader = reader == Reader::kNearest ? "nearest" : "linear";
   } else {
-    // Pairs are drawn from all directions, so all cells are needed.
+    // Pairs are drawn from all directions, so all cells are needed, unless they are dear.
     FileOrder whole = order;
-    whole.reach.reset();
+    if (!setting.cells.average) whole.reach.reset();
     const Table table = written_and_read(whole, setting, workers);
     prediction.error.error = error_of(table, reader, exact, workers);
     prediction.error.reader = reader_name(table, reader);

@@ -116,9 +116,9 @@ void check_description(const AltaRows& rows, const TableSpec& spec, const std::s
 }
 
 // Cells of a described table that no row may leave out: those above the horizon, of a cloth that
-// was computed.
+// was computed. Where a scene's table was resampled, nothing may be known.
 bool may_be_missing(const TableSpec& spec, const AltaLayout& layout, std::size_t cell) {
-  return !spec.provenance.material || !layout.holds(cell);
+  return !spec.provenance.material || spec.reach || !layout.holds(cell);
 }
 
 Table grid_of(const AltaRows& rows, TableSpec spec, const std::string& name) {

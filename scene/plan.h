@@ -19,7 +19,7 @@ struct LeftOut {
 /// What leaving out saves, 0 to 1, as predicted.
 struct Saving {
   double evaluation = 0;  ///< of the work for a pair of directions
-  double cells = 0;       ///< of the cells of a table above the horizon, by the default grids
+  double cells = 0;       ///< of the cells of a table of equal resolution, above the horizon
   double total = 0;       ///< of the work for a table
 };
 

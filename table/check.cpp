@@ -97,7 +97,8 @@ void check_values(const Table& table, TableCheck& check) {
         count(check.not_finite, found, false);
       } else if (below) {
         if (found.value > 0) count(check.below_not_zero, found, false);
-      } else if (found.value < 0 && (spec.cells.average || above)) {
+      } else if (found.value < 0 && (spec.cells.average || above) &&
+                 (!spec.reach || table.valid(cell))) {
         count(check.negative, found, found.value < check.negative.worst.value);
       }
     }

@@ -186,7 +186,11 @@ class InOutMarker final : public Marker {
     const bool any_azimuth = grid.axes[1].size == 1;
     for (Pair pair : pairs_of(reach)) {
       // An only azimuth of the light stands for any, and the eye's is counted from it.
-      if (any_azimuth) pair = {pair.theta_i, {}, pair.theta_o, pair.phi_o - pair.phi_i};
+      // At the pole the light has none, and readers count from any.
+      if (any_azimuth) {
+        const bool pole = pair.theta_i.low <= kRounding;
+        pair = {pair.theta_i, {}, pair.theta_o, pole ? Arc{} : pair.phi_o - pair.phi_i};
+      }
       lights_.push_back(cells_of(grid.axes[0], grid.axes[1], pair.theta_i, pair.phi_i));
       eyes_.push_back(cells_of(grid.axes[2], grid.axes[3], pair.theta_o, pair.phi_o));
     }

@@ -19,7 +19,7 @@ struct ColumnRange {
 /// The cells of a grid in which a scene can produce a pair of directions, and a margin: the next
 /// cell to both sides on each axis, so that readers may interpolate. All of these are found, and
 /// some more, since bounds of angles over small blocks of cells decide: of half/difference grids
-/// some 3 degrees of theta_h and theta_d by 5 of phi_d. Part of a cell may lie below the horizon.
+/// some 3 degrees of theta_h and theta_d by 6 of phi_d. Part of a cell may lie below the horizon.
 class ReachedCells {
  public:
   /// Ranges of the reach as DirectionRange allows them.

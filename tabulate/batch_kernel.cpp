@@ -45,6 +45,7 @@ void prepare(const BatchPlan<T>& plan, const DirectionArrays<T>& in, Block<T>& b
   const auto zero = hn::Zero(d);
   const auto one = hn::Set(d, T(1));
   const auto half = hn::Set(d, T(0.5));
+  const auto least = hn::Set(d, std::numeric_limits<T>::min());
   const auto turn_sin = hn::Set(d, plan.turn_sin);
   const auto turn_cos = hn::Set(d, plan.turn_cos);
   constexpr int kMantissa = sizeof(T) == sizeof(float) ? 23 : 52;
@@ -77,7 +78,7 @@ void prepare(const BatchPlan<T>& plan, const DirectionArrays<T>& in, Block<T>& b
       // min(1 / (2 low), h_n / x) / (2 high), model.md section 7; h_n / x = 2 h_z / length^2.
       const auto shadowed = hn::Mul(hn::Add(normal, normal), inverse);
       factor = hn::Mul(hn::Mul(factor, hn::Min(half, hn::Mul(shadowed, low))),
-                       hn::Div(half, hn::Mul(low, high)));
+                       hn::Div(half, hn::Max(hn::Mul(low, high), least)));
     } else {
       factor = hn::Div(factor, wi_z);
     }
@@ -221,8 +222,7 @@ void sum_lanes(const BatchPlan<T>& plan, std::size_t first, std::size_t count, B
 
 /// fresnel()'s r for incidence cosines x, as numerator and denominator, which take one division
 /// with what they are multiplied by; m = (n - 1) (n + 1) of the refractive index n. With q = x +
-/// sqrt(x^2
-/// + m) it is m^2 (q^2 (x q - 1)^2 + (x m + q)^2) / (2 q^4 (x m + q)^2).
+/// sqrt(x^2 + m) it is m^2 (q^2 (x q - 1)^2 + (x m + q)^2) / (2 q^4 (x m + q)^2).
 template <class V>
 struct Quotient {
   V numerator;

@@ -151,6 +151,12 @@ TEST_CASE("one direction of light and one of the eye reach a cell and its neighb
   CHECK(cells.columns().begin == 2 * 48);
   CHECK(cells.columns().end == 5 * 48);
 
+  // Light at the pole has no azimuth: where one stands for any, the eye is counted from none.
+  const Grid any = inout(6, 1, 6, 24);
+  const Reach above = {{{{0, 0}, {50, 50}}}, {{{45, 45}, {90, 90}}}, {0}};
+  const Directions seen = {direction(0, 50), direction(45, 90)};
+  CHECK(marks(any, above)[linear_stencil(any, seen).cells[0]] == 1);
+
   // The cloth turned by 90 degrees sees both a quarter turn back.
   const ReachedCells turned(inout(), {reach.lights, reach.eyes, {90}});
   CHECK(turned.row(2 * 48).size() == 3);
