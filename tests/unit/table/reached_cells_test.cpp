@@ -154,7 +154,7 @@ TEST_CASE("one direction of light and one of the eye reach a cell and its neighb
   // Light at the pole has no azimuth: where one stands for any, the eye is counted from none.
   const Grid any = inout(6, 1, 6, 24);
   const Reach above = {{{{0, 0}, {50, 50}}}, {{{45, 45}, {90, 90}}}, {0}};
-  const Directions seen = {direction(0, 50), direction(45, 90)};
+  const Directions seen = {direction(0.0, 50.0), direction(45.0, 90.0)};
   CHECK(marks(any, above)[linear_stencil(any, seen).cells[0]] == 1);
 
   // The cloth turned by 90 degrees sees both a quarter turn back.
