@@ -5,6 +5,7 @@
 #include <bit>
 #include <charconv>
 #include <cstring>
+#include <functional>
 #include <limits>
 #include <string>
 #include <vector>
@@ -104,6 +105,14 @@ class RowWriter {
   std::size_t count_ = 0;
 };
 
+// Calls `fail` where readers would not take a file of so few rows.
+void require_enough(std::size_t rows, const TableSpec& spec,
+                    const std::function<void(const std::string&)>& fail) {
+  if (rows > 0 && rows >= spec.cell_count() / kMostCellsPerRow) return;
+  fail(": only " + std::to_string(rows) + " of " + std::to_string(spec.cell_count()) +
+       " cells hold a value; one in 100 is needed, a coarser grid may have it");
+}
+
 template <Encoding kEncoding>
 void write_alta(const Producer& producer, AtomicFile& file, const WriteOptions& options) {
   const TableSpec& spec = producer.spec();
@@ -111,11 +120,12 @@ void write_alta(const Producer& producer, AtomicFile& file, const WriteOptions& 
   const std::size_t channels = spec.channels.size();
   const AltaLayout layout(spec);
   RowWriter rows(file, header_of(spec, layout, kEncoding), kEncoding);
+  const std::vector<std::uint8_t> counts = cells_with_values(spec);
   std::vector<double> of_cell(channels);
   const auto take = [&](std::size_t first_row, std::span<double> values) {
     const std::size_t first = first_row * columns;
     for (std::size_t k = 0; k < values.size() / channels; ++k) {
-      if (!layout.holds(first + k)) continue;
+      if (counts[first + k] == 0) continue;
       for (std::size_t c = 0; c < channels; ++c) {
         of_cell[c] = values[(k / columns * channels + c) * columns + k % columns];
       }
@@ -125,11 +135,8 @@ void write_alta(const Producer& producer, AtomicFile& file, const WriteOptions& 
     }
   };
   stream_rows(producer, options.workers, take);
-  if (rows.count() == 0 || rows.count() < spec.cell_count() / kMostCellsPerRow) {
-    throw WorkError(file.name().string() + ": only " + std::to_string(rows.count()) + " of " +
-                    std::to_string(spec.cell_count()) +
-                    " cells hold a value; one in 100 is needed, a coarser grid may have it");
-  }
+  require_enough(rows.count(), spec,
+                 [&](const std::string& text) { throw WorkError(file.name().string() + text); });
   rows.finish();
 }
 
@@ -151,6 +158,12 @@ void check_alta(const TableSpec& spec, const WriteOptions& /*none*/, const std::
   if (spec.cell_count() > std::numeric_limits<std::int32_t>::max()) {
     throw InputError(name + ": " + spec.description() + " is not allowed: ALTA counts up to " +
                      std::to_string(std::numeric_limits<std::int32_t>::max()) + " samples");
+  }
+  // Before the work, what can be told of a scene.
+  if (spec.reach) {
+    const std::vector<std::uint8_t> counts = cells_with_values(spec);
+    require_enough(static_cast<std::size_t>(std::count(counts.begin(), counts.end(), 1)), spec,
+                   [&](const std::string& text) { throw InputError(name + text); });
   }
 }
 

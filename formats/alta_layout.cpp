@@ -29,8 +29,7 @@ std::string_view parametrisation_of(const TableSpec& spec) {
 AltaLayout::AltaLayout(const TableSpec& spec)
     : spec_(spec),
       parametrisation_(parametrisation_of(spec)),
-      dimension_(spec.has_grid() ? spec.grid().axes.size() : (spec.isotropic() ? 3 : 4)),
-      holds_(cells_with_values(spec)) {}
+      dimension_(spec.has_grid() ? spec.grid().axes.size() : (spec.isotropic() ? 3 : 4)) {}
 
 std::string_view AltaLayout::output() const {
   const auto same = [](const Channel& a, const Channel& b) {
@@ -39,6 +38,12 @@ std::string_view AltaLayout::output() const {
   const bool rgb = std::equal(spec_.channels.begin(), spec_.channels.end(), rgb_channels().begin(),
                               rgb_channels().end(), same);
   return rgb ? "RGB_COLOR" : "INV_STERADIAN";
+}
+
+bool AltaLayout::holds(std::size_t cell) const {
+  if (!spec_.has_grid()) return true;
+  return spec_.cells.average ? spec_.grid().any_above_horizon(cell)
+                             : spec_.grid().node_above_horizon(cell);
 }
 
 std::array<double, 4> AltaLayout::coordinates(std::size_t cell) const {

@@ -1,14 +1,13 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "table/table.h"
+#include "table/table_spec.h"
 
 namespace clothbrdf {
 
@@ -25,7 +24,7 @@ class AltaLayout {
   std::size_t dimension() const { return dimension_; }
 
   /// Whether a file has a row for a cell that was measured.
-  bool holds(std::size_t cell) const { return holds_[cell] != 0; }
+  bool holds(std::size_t cell) const;
 
   /// The first dimension() numbers of a cell's row, radians; 0 beyond.
   std::array<double, 4> coordinates(std::size_t cell) const;
@@ -39,7 +38,6 @@ class AltaLayout {
   const TableSpec& spec_;
   std::string_view parametrisation_;
   std::size_t dimension_;
-  std::vector<std::uint8_t> holds_;  // [cell]
 };
 
 /// A grid of fewer cells with a value than one in so many is not written: a reader could not tell

@@ -115,12 +115,6 @@ void check_description(const AltaRows& rows, const TableSpec& spec, const std::s
                std::to_string(layout.dimension()) + " " + std::to_string(spec.channels.size()));
 }
 
-// Cells of a described table that no row may leave out: those above the horizon, of a cloth that
-// was computed. Where a scene's table was resampled, nothing may be known.
-bool may_be_missing(const TableSpec& spec, const AltaLayout& layout, std::size_t cell) {
-  return !spec.provenance.material || spec.reach || !layout.holds(cell);
-}
-
 Table grid_of(const AltaRows& rows, TableSpec spec, const std::string& name) {
   const AltaLayout layout(spec);
   const std::size_t cells = spec.cell_count();
@@ -143,12 +137,13 @@ Table grid_of(const AltaRows& rows, TableSpec spec, const std::string& name) {
     valid[*cell] = 1;
     for (std::size_t c = 0; c < rows.outputs; ++c) value_of(*cell, c) = numbers[rows.inputs + c];
   }
+  const std::vector<std::uint8_t> counts = cells_with_values(spec);
   for (std::size_t cell = 0; cell < cells; ++cell) {
-    if (valid[cell] != 0) continue;
-    if (!may_be_missing(spec, layout, cell)) {
+    if (valid[cell] != 0 || counts[cell] == 0) continue;
+    // All is known of a cloth that was computed; a scene's table may have been resampled since.
+    if (spec.provenance.material && !spec.reach) {
       throw InputError(name + ": the sample at " + spec.place(cell) + " is missing");
     }
-    if (!layout.holds(cell)) continue;
     for (std::size_t c = 0; c < rows.outputs; ++c) value_of(cell, c) = kNotMeasured;
   }
   mask_not_measured(spec, values, valid);

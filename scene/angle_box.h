@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "model/directions.h"
-#include "scene/interval.h"
+#include "table/interval.h"
 
 namespace clothbrdf {
 

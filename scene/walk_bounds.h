@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "model/reflectance.h"
-#include "scene/interval.h"
+#include "table/interval.h"
 
 namespace clothbrdf {
 

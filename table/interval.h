@@ -6,7 +6,7 @@
 namespace clothbrdf {
 
 /// All numbers from low to high. Ends are rounded to nearest, not outwards: whoever states a bound
-/// widens the result by more than all roundings together (kRounding of the planner).
+/// widens the result by more than all roundings together (kRounding of the planner, kArcRounding).
 struct Interval {
   double low = 0;
   double high = 0;
@@ -26,6 +26,8 @@ inline Interval operator+(const Interval& a, const Interval& b) {
 inline Interval operator-(const Interval& a, const Interval& b) {
   return {a.low - b.high, a.high - b.low};
 }
+
+inline Interval operator-(const Interval& a) { return {-a.high, -a.low}; }
 
 inline Interval operator*(const Interval& a, const Interval& b) {
   if (a.low >= 0 && b.low >= 0) return {a.low * b.low, a.high * b.high};
