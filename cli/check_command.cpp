@@ -86,8 +86,8 @@ std::vector<std::string> notes(const TableSpec& spec, const TableCheck& check) {
   if (!spec.provenance.note.empty()) found.push_back(spec.provenance.note);
   if (check.not_reached > 0) {
     found.push_back(with_commas(check.not_reached) +
-                    " cells above the horizon are not for the scene that the table was made for: "
-                    "they hold 0 and do not count");
+                    " cells above the horizon are not for the scene that the table was made for, "
+                    "and do not count");
   }
   if (spec.reach) found.emplace_back("no albedo: a table for a scene lacks directions");
   if (check.masked > 0) {

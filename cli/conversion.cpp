@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iomanip>
+#include <span>
 #include <sstream>
 #include <utility>
 
@@ -106,7 +107,12 @@ Comparison compare_with_file(const Table& written, const Table& source, const Fo
                              const WriteOptions& options) {
   const Table there = resample(source, compared_pairs(written.spec().isotropic()), options.workers);
   const std::unique_ptr<Producer> coloured = in_colours_of(format, there, options);
-  return compare(coloured ? collect(*coloured, options.workers) : there, written, options.workers);
+  if (!coloured) return compare(there, written, options.workers);
+  const Table mixed = collect(*coloured, options.workers);
+  std::vector<std::uint8_t> valid(mixed.spec().cell_count());
+  for (std::size_t cell = 0; cell < valid.size(); ++cell) valid[cell] = there.valid(cell) ? 1 : 0;
+  const std::span<const double> values = mixed.values();
+  return compare({mixed.spec(), {values.begin(), values.end()}, valid}, written, options.workers);
 }
 
 std::size_t not_measured(const Table& table) {

@@ -104,6 +104,7 @@ void check_shown(const Source& source, const Show& show) {
 Panel make_panel(const Source& source, const View& view, const SheetView& sheet, double light_theta,
                  const Workers& workers) {
   std::string caption = source.name + (*view.caption == '\0' ? "" : ", ") + view.caption;
+  if (source.cloth->for_scene()) caption += view.lobes ? ", gaps: not in it" : ", blue: not in it";
   if (view.lobes) {
     const LobesView lobes{light_theta, view.turn_deg, sheet.size};
     caption += ": ring " + number_text(lobe_scale(*source.cloth, lobes)) + "/sr";
@@ -111,7 +112,6 @@ Panel make_panel(const Source& source, const View& view, const SheetView& sheet,
     workers.advance(image.pixels.size());
     return {caption, std::move(image)};
   }
-  if (source.cloth->for_scene()) caption += ", blue: not in it";
   const Shading shading = source.cloth->shading(view.part);
   return {caption, render_sheet(turned(shading, view.turn_deg), sheet, workers)};
 }

@@ -1,5 +1,6 @@
 #include "cli/table_output.h"
 
+#include <algorithm>
 #include <iomanip>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -10,20 +11,23 @@
 #include "cli/options.h"
 #include "cli/plan_text.h"
 #include "formats/format_colours.h"
-#include "table/reached_cells.h"
+#include "table/table.h"
 
 namespace clothbrdf {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-// "1,234 cells are for the scene, the others hold 0".
-std::string reach_note(const TableSpec& spec, const Format& format) {
+// "1,234 cells are for the scene, the others hold 0"; nothing where all above the horizon are.
+std::string reach_note(TableSpec spec, const Format& format) {
   if (!spec.reach) return "";
-  const std::size_t reached = ReachedCells(spec.grid(), *spec.reach).count();
-  TableSpec whole = spec;
-  whole.reach.reset();
-  if (cells_with_values(whole) == cells_with_values(spec)) return "";
+  const auto count = [&] {
+    const std::vector<std::uint8_t> cells = cells_with_values(spec);
+    return std::count(cells.begin(), cells.end(), 1);
+  };
+  const auto reached = static_cast<std::size_t>(count());
+  spec.reach.reset();
+  if (static_cast<std::size_t>(count()) == reached) return "";
   return with_commas(reached) + " cells are for the scene, the others hold 0" +
          (format.keeps_description ? "" : ", which this format cannot tell from values");
 }
@@ -39,9 +43,6 @@ std::string what_is_lost(const Material& material, const TableSpec& computed,
   if (!format.averages.empty()) lost.emplace_back(format.averages);
   if (const std::string colours = colours_note(computed, written); !colours.empty()) {
     lost.push_back(colours);
-  }
-  if (const std::string reached = reach_note(written, format); !reached.empty()) {
-    lost.push_back(reached);
   }
   std::string note;
   for (const std::string& what : lost) note += (note.empty() ? "" : "; ") + what;
@@ -89,8 +90,10 @@ void describe(TableOutput& output) {
   output.spec = in_colours_of(*order.format, computed, output.setting.options);
   output.note = what_is_lost(order.material, computed, output.spec, *order.format);
   if (!output.plan) return;
-  const std::string left_out = left_out_text(*output.plan);
-  output.note += (output.note.empty() || left_out.empty() ? "" : "; ") + left_out;
+  for (const std::string& more :
+       {reach_note(output.spec, *order.format), left_out_text(*output.plan)}) {
+    output.note += (output.note.empty() || more.empty() ? "" : "; ") + more;
+  }
 }
 
 void report_written(const TableOutput& output, std::uint64_t bytes, double seconds, bool as_json) {

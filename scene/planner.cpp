@@ -50,11 +50,14 @@ double reached_share(const Grid& grid, const Reach& reach) {
   return static_cast<double>(std::count(cells.begin(), cells.end(), 1)) / static_cast<double>(all);
 }
 
-// What is left of the cells of a table, by the default grids.
-double cells_left(const Effects& effects, const Reach& reach) {
-  return effects.anisotropy ? reached_share(halfdiff4d(), reach)
-                            : kCellsWithoutAnisotropy * reached_share(halfdiff3d(), reach);
-}
+// What is left of the cells of a table, as seen on the default grids.
+struct CellsLeft {
+  explicit CellsLeft(const Reach& reach)
+      : anisotropic(reached_share(halfdiff4d(), reach)),
+        isotropic(kCellsWithoutAnisotropy * reached_share(halfdiff3d(), reach)) {}
+  double anisotropic;
+  double isotropic;
+};
 
 // A choice: of each effect none or one of its candidates.
 struct Choice {
@@ -64,12 +67,12 @@ struct Choice {
 
 class MaterialPlanner {
  public:
-  MaterialPlanner(const Scene& scene, const Material& material, const LitBoxes& lit,
-                  double brightest, const Workers& workers)
-      : scene_(scene),
-        material_(material),
+  MaterialPlanner(const Material& material, const LitBoxes& lit, const CellsLeft& cells_left,
+                  double brightest, double tolerance, const Workers& workers)
+      : material_(material),
         lit_(lit),
-        budget_(scene.tolerance * brightest),
+        cells_left_(cells_left),
+        budget_(tolerance * brightest),
         rounding_(kRounding * brightest),
         workers_(workers),
         effects_(candidates(material, mean_cosine(lit))) {}
@@ -113,7 +116,7 @@ class MaterialPlanner {
     plan.kept = kept(choice, left);
     const double full = evaluation_cost(material_, {});
     const double evaluation = evaluation_cost(material_, plan.effects) / full;
-    const double cells = cells_left(plan.effects, scene_.reach());
+    const double cells = plan.effects.anisotropy ? cells_left_.anisotropic : cells_left_.isotropic;
     plan.saving = {1 - evaluation, 1 - cells, 1 - evaluation * cells};
     return plan;
   }
@@ -159,7 +162,7 @@ class MaterialPlanner {
   double cost(const std::vector<const Candidate*>& left_out) const {
     Effects effects;
     for (const Candidate* candidate : left_out) leave_out(effects, *candidate);
-    const double cells = effects.anisotropy ? 1 : kCellsWithoutAnisotropy;
+    const double cells = effects.anisotropy ? cells_left_.anisotropic : cells_left_.isotropic;
     return evaluation_cost(material_, effects) * cells;
   }
 
@@ -223,9 +226,9 @@ class MaterialPlanner {
     return names;
   }
 
-  const Scene& scene_;
   const Material& material_;
   const LitBoxes& lit_;
+  const CellsLeft& cells_left_;
   double budget_;
   double rounding_;
   const Workers& workers_;
@@ -253,10 +256,12 @@ Plan make_plan(const Scene& scene, Workers workers) {
     plan.brightest_at_most = std::max(plan.brightest_at_most, b.at_most);
   }
   if (!(plan.brightest > 0)) throw WorkError("nothing in the scene reflects any light");
+  const CellsLeft cells(plan.reach);
   for (std::size_t m = 0; m < found.size(); ++m) {
     const LitBoxes lit(scene, scene.materials[m]);
     MaterialPlan of_material =
-        MaterialPlanner(scene, scene.materials[m], lit, plan.brightest, workers).plan();
+        MaterialPlanner(scene.materials[m], lit, cells, plan.brightest, scene.tolerance, workers)
+            .plan();
     for (LeftOut& out : of_material.left_out) out.bound /= plan.brightest;
     of_material.bound /= plan.brightest;
     of_material.brightest = found[m].reached;

@@ -87,7 +87,7 @@ struct TableSpec {
   CellRule cells;
   Provenance provenance;
   /// Of a grid: the directions that its cells are for. Those that it does not reach, by
-  /// ReachedCells, hold 0 and say nothing; all count where it is left out.
+  /// ReachedCells, say nothing (tabulate writes 0); all count where it is left out.
   std::optional<Reach> reach = {};
 
   bool has_grid() const { return std::holds_alternative<Grid>(samples); }

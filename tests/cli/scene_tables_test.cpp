@@ -219,6 +219,15 @@ TEST_CASE("commands that read a table know which cells are for the scene") {
   output_of({"convert", table, (folder / "u.alta").string()});
   CHECK(json_of({"info", (folder / "u.alta").string()})["cells"] == info["cells"]);
   CHECK_THAT(json_of({"convert", table, merl})["lost"].dump(), ContainsSubstring("-1, the mark"));
+  // Of a coarser grid the margin reaches farther: nothing is known there, and nothing is wrong.
+  for (const char* name : {"v.alta", "v.exr"}) {
+    const std::string coarse = (folder / name).string();
+    output_of({"convert", table, coarse, "--grid", "halfdiff3d:10x10x15"});
+    const json found = json_of({"check", coarse});
+    CHECK(found["problems"].empty());
+    CHECK(found["masked"] > 0);
+    CHECK(json_of({"info", coarse})["cells"]["valid"] > 0);
+  }
   CHECK_THAT(
       json_of({"convert", table, (folder / "u.bsdf").string(), "--size", "100000"})["lost"].dump(),
       ContainsSubstring("the scene: no longer told apart"));
