@@ -10,6 +10,7 @@
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "cli/progress_bar.h"
+#include "cli/report_text.h"
 #include "support/errors.h"
 #include "table/check.h"
 
@@ -24,39 +25,33 @@ struct CheckOptions {
   bool json = false;
 };
 
-std::string short_number(double value) {
-  std::ostringstream text;
-  text << std::setprecision(3) << value;
-  return text.str();
-}
-
 std::string where(const TableSpec& spec, const TableValue& at) {
   return full_name(spec.channels[at.channel]) + " at " + spec.place(at.cell);
 }
 
 std::string flaw_text(const TableSpec& spec, const Flaw& flaw, const char* which) {
   if (flaw.count == 0) return "none";
-  return with_commas(flaw.count) + " values; " + which + " " + short_number(flaw.worst.value) +
+  return with_commas(flaw.count) + " values; " + which + " " + short_number(flaw.worst.value, 3) +
          " in " + where(spec, flaw.worst);
 }
 
 std::string reciprocity_text(const TableSpec& spec, const ReciprocityCheck& r) {
   if (r.by_construction) return "the grid stores one value for both orders of the directions";
   if (r.compared == 0) return "cannot be told: no cell's mirror image is a cell of the table";
-  std::string text = "f(wi,wo) and f(wo,wi) differ by at most " + short_number(r.worst);
+  std::string text = "f(wi,wo) and f(wo,wi) differ by at most " + short_number(r.worst, 3);
   if (r.worst > 0) {
-    text += " (" + short_number(r.here.value) + " and " + short_number(r.mirrored) + " in " +
+    text += " (" + short_number(r.here.value, 3) + " and " + short_number(r.mirrored, 3) + " in " +
             where(spec, r.here) + ")";
   }
-  text += ", allowed " + short_number(r.allowed);
+  text += ", allowed " + short_number(r.allowed, 3);
   if (!r.promised) text += "; not promised by this table";
   return text;
 }
 
 std::string albedo_text(const TableSpec& spec, const Albedo& a) {
   const std::string of = a.of_eye ? "o " : "i ";
-  return short_number(a.value) + " at theta_" + of + short_number(a.theta_i_deg) + " phi_" + of +
-         short_number(a.phi_i_deg) + " in " + full_name(spec.channels[a.channel]);
+  return short_number(a.value, 3) + " at theta_" + of + short_number(a.theta_i_deg, 3) + " phi_" +
+         of + short_number(a.phi_i_deg, 3) + " in " + full_name(spec.channels[a.channel]);
 }
 
 /// One line for each thing that is wrong.
@@ -75,7 +70,7 @@ std::vector<std::string> problems(const TableSpec& spec, const TableCheck& check
   const std::optional<Albedo> largest = check.largest_albedo();
   if (largest && largest->value > kHighestAlbedo) {
     found.push_back("albedo: " + albedo_text(spec, *largest) + " is above " +
-                    short_number(kHighestAlbedo));
+                    short_number(kHighestAlbedo, 3));
   }
   return found;
 }
@@ -126,8 +121,8 @@ void print_text(const CheckOptions& options, const TableSpec& spec, const TableC
   for (const Albedo& a : check.albedo) {
     std::ostringstream row;
     row << std::right << std::setw(7) << a.theta_i_deg << "  " << std::left << std::setw(8)
-        << short_number(a.value) << full_name(spec.channels[a.channel])
-        << (a.of_eye ? ", eye at phi_o " : ", phi_i ") << short_number(a.phi_i_deg);
+        << short_number(a.value, 3) << full_name(spec.channels[a.channel])
+        << (a.of_eye ? ", eye at phi_o " : ", phi_i ") << short_number(a.phi_i_deg, 3);
     line("", row.str());
   }
   for (const std::string& note : notes(spec, check)) line("note", note);

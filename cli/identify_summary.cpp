@@ -2,6 +2,7 @@
 
 #include "cli/options.h"
 #include "cli/report_text.h"
+#include "table/table_spec.h"
 
 namespace clothbrdf {
 namespace {
@@ -15,7 +16,7 @@ std::string parameters_text(const IdentifyReport& report) {
                     short_number(p.predicted, 3), short_number(p.observed, 3),
                     short_number(p.bias, 2), std::string(verdict_text(p.verdict))});
     std::string words = p.reason;
-    if (!p.remedy.empty()) words += (words.empty() ? "" : "; ") + ("would settle it: " + p.remedy);
+    if (!p.remedy.empty()) add_note(words, "would settle it: " + p.remedy);
     add_remark(remarks, p.name, words);
   }
   return columns(rows) + remarks_text("why, and what would settle it", remarks);
@@ -78,7 +79,7 @@ std::string identify_summary(const std::string& file, const IdentifyReport& repo
   text += equivalents_text(report.equivalents) + profiles_text(report);
   if (!report.tried.empty()) {
     std::string tried;
-    for (const std::string& other : report.tried) tried += (tried.empty() ? "" : "; ") + other;
+    for (const std::string& other : report.tried) add_note(tried, other);
     text += labelled("tried", "what other measurements would settle: " + tried);
   }
   return text + labelled("time", short_number(report.seconds, 3) + " s");

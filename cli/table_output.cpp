@@ -45,7 +45,7 @@ std::string what_is_lost(const Material& material, const TableSpec& computed,
     lost.push_back(colours);
   }
   std::string note;
-  for (const std::string& what : lost) note += (note.empty() ? "" : "; ") + what;
+  for (const std::string& what : lost) add_note(note, what);
   return note;
 }
 
@@ -92,7 +92,7 @@ void describe(TableOutput& output) {
   if (!output.plan) return;
   for (const std::string& more :
        {reach_note(output.spec, *order.format), left_out_text(*output.plan)}) {
-    output.note += (output.note.empty() || more.empty() ? "" : "; ") + more;
+    add_note(output.note, more);
   }
 }
 

@@ -220,8 +220,9 @@ void add_tabulate_command(CLI::App& program) {
       "ending. Of a scene, what its tolerance allows to leave out is left out.\n"
       "Example: clothbrdf tabulate materials/silk.json -o silk.binary -o silk.exr");
   std::string known;
-  for (const Format& f : formats())
-    known += (known.empty() ? "" : "; ") + std::string(f.ending) + ": " + std::string(f.summary);
+  for (const Format& f : formats()) {
+    add_note(known, std::string(f.ending) + ": " + std::string(f.summary));
+  }
   command->add_option("MATERIAL", options->material, "material file or scene file (JSON)")
       ->required()
       ->type_name("FILE");

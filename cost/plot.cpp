@@ -191,7 +191,7 @@ std::string cost_plot(const CostReport& report, const std::string& terminal) {
   std::ostringstream script;
   script.precision(9);
   script
-      << "set terminal " << terminal << " size " << kPlotWidth << ',' << kPlotHeight
+      << "set terminal " << terminal << " size " << kCostPlotWidth << ',' << kCostPlotHeight
       << " noenhanced background '#FFFFFF' font 'sans,11'\n"
       << "set multiplot layout 1," << panels.size() << " title "
       << quoted(report.material.name + ": error over time (grey: dominated)") << " noenhanced\n"

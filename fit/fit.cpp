@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <optional>
 
@@ -22,8 +21,6 @@
 
 namespace clothbrdf {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 const char* weighting_text(Weighting weighting) {
   switch (weighting) {
@@ -190,7 +187,7 @@ class TableFit {
     return make_rows(observations, source, weights, nullptr, true, workers_);
   }
 
-  double chosen_chi2() const { return results_.empty() ? kInfinity : results_[chosen_].fit.chi2; }
+  double chosen_chi2() const { return results_.empty() ? HUGE_VAL : results_[chosen_].fit.chi2; }
 
   // Every pair of layer counts on all rows; the chosen fit may change.
   void profile_layers(const FitProblem& problem, ConventionResult& chosen) {

@@ -13,7 +13,7 @@ namespace {
 constexpr double kMostTurn = 360;
 
 // Name, column, unit, range of the fit, range of scattered starts, offset of the logarithm.
-struct Row {
+struct ParameterRow {
   const char* name;
   LocalColumn column;
   const char* unit;
@@ -22,7 +22,7 @@ struct Row {
   double log_offset;
 };
 
-constexpr Row kYarnRows[] = {
+constexpr ParameterRow kYarnRows[] = {
     {"lobe_axes.0", kAlong, "1", 1e-3, 1, 0.03, 0.9, 0},
     {"lobe_axes.1", kAcross, "1", 1e-3, 1, 0.03, 0.9, 0},
     {"refractive_index", kIndex, "1", 1.2, 2, 1.3, 1.8, -1},
@@ -30,7 +30,7 @@ constexpr Row kYarnRows[] = {
     {"absorption", kAbsorption, "1", 0, 20, 0.05, 1, 0.02},
 };
 
-constexpr Row kClothRows[] = {
+constexpr ParameterRow kClothRows[] = {
     {"rotation_deg", kRotation, "deg", -kMostTurn, kMostTurn, -45, 45, -1},
     {"weights.specular", kSpecular, "1", 0, 100, 1, 1, 0.02},
     {"weights.internal", kInternal, "1", 0, 100, 1, 1, 0.02},
@@ -39,7 +39,7 @@ constexpr Row kClothRows[] = {
     {"warp_fraction", kFraction, "1", 0, 1, 0.3, 0.7, -1},
 };
 
-FitParameter from_row(const Row& row) {
+FitParameter from_row(const ParameterRow& row) {
   FitParameter p;
   p.name = row.name;
   p.unit = row.unit;
@@ -111,10 +111,10 @@ double FitParameter::value_slope(double value) const {
 
 std::vector<FitParameter> fit_parameters(std::size_t channels) {
   std::vector<FitParameter> all;
-  for (const Row& row : kClothRows) all.push_back(from_row(row));
+  for (const ParameterRow& row : kClothRows) all.push_back(from_row(row));
   for (const std::size_t yarn : {0U, 1U}) {
     const std::string prefix = yarn == 0 ? "warp." : "weft.";
-    for (const Row& row : kYarnRows) {
+    for (const ParameterRow& row : kYarnRows) {
       const bool many = row.column == kAbsorption;
       for (std::size_t c = 0; c < (many ? channels : 1); ++c) {
         FitParameter p = from_row(row);

@@ -5,13 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <limits>
 #include <random>
 
 namespace clothbrdf {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // A start's solve need not end: what is promising goes on from there.
 constexpr SolveLimits kFirstLook{
@@ -205,7 +202,7 @@ LayerRange layer_range(const ParameterSet& set, const FitOptions& options, std::
 LayerTable::LayerTable(LayerRange warp, LayerRange weft, bool tied)
     : warp_(warp), weft_(weft), tied_(tied) {
   Solution none;
-  none.cost = kInfinity;
+  none.cost = HUGE_VAL;
   for (int a = warp.fewest; a <= warp.most; ++a) {
     for (int b = weft.fewest; b <= weft.most; ++b) {
       if (!tied || a == b) pairs_.emplace_back(a, b);
@@ -269,7 +266,7 @@ Search search(const Misfit& misfit, const ParameterSet& set, const FitOptions& o
       found[k] = searcher.descend(searcher.go_on(found[k]), result.layers);
     });
     ends.insert(ends.end(), found.begin(), found.end());
-    double lowest = kInfinity;
+    double lowest = HUGE_VAL;
     for (const Solution& end : ends) lowest = std::min(lowest, end.cost);
     const auto at_best = std::count_if(ends.begin(), ends.end(), [&](const Solution& end) {
       return same_minimum(lowest, end.cost, rounding);

@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "model/degrees.h"
 
 namespace clothbrdf {
 namespace {
-
-constexpr double kRadian = std::numbers::pi / 180;
 
 // Nodes are written to all digits; this is far less than any step of a grid.
 constexpr double kSameNode = 1e-9;

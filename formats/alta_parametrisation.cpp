@@ -15,8 +15,7 @@ using Vector = Vector3<double>;
 using Coordinates = std::span<const double>;
 using Pair = std::optional<DirectionPair>;
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kDegrees = 180 / kPi;
+constexpr double kDegrees = 180 / std::numbers::pi;
 constexpr SinCos<double> kRightAngle = {1, 0};
 
 // Files are written with few digits, too: what misses a range, or the length 1, by less is meant to
@@ -37,7 +36,9 @@ Pair pair_of(const Vector& light, const Vector& view) {
 }
 
 Pair pair_of_angles(double theta_l, double phi_l, double theta_v, double phi_v) {
-  const auto allowed = [](double theta) { return theta >= 0 && theta <= kPi + kSlack; };
+  const auto allowed = [](double theta) {
+    return theta >= 0 && theta <= std::numbers::pi + kSlack;
+  };
   if (!allowed(theta_l) || !allowed(theta_v)) return std::nullopt;
   return DirectionPair{theta_l * kDegrees, phi_l * kDegrees, theta_v * kDegrees, phi_v * kDegrees};
 }
@@ -73,7 +74,7 @@ Pair cos_th(Coordinates x) {
 
 Pair cos_tk(Coordinates x) {
   const auto theta_k = angle_of(x[0]);
-  return theta_k ? pair_of_angles(*theta_k, 0, *theta_k, kPi) : std::nullopt;
+  return theta_k ? pair_of_angles(*theta_k, 0, *theta_k, std::numbers::pi) : std::nullopt;
 }
 
 Pair cos_tlv(Coordinates x) {
@@ -87,7 +88,7 @@ Pair cos_th_td(Coordinates x) {
   return theta_h && theta_d ? pair_of_half_angles(*theta_h, 0, *theta_d, 0) : std::nullopt;
 }
 
-Pair rusin_th_td(Coordinates x) { return pair_of_half_angles(x[0], 0, x[1], kPi / 2); }
+Pair rusin_th_td(Coordinates x) { return pair_of_half_angles(x[0], 0, x[1], std::numbers::pi / 2); }
 Pair rusin_th_td_pd(Coordinates x) { return pair_of_half_angles(x[0], 0, x[1], x[2]); }
 Pair rusin_th_ph_td_pd(Coordinates x) { return pair_of_half_angles(x[0], x[1], x[2], x[3]); }
 

@@ -19,11 +19,6 @@
 namespace clothbrdf {
 namespace {
 
-void add(std::string& note, std::string_view text) {
-  if (text.empty()) return;
-  note += (note.empty() ? "" : "; ") + std::string(text);
-}
-
 std::span<const double> row_of(const AltaRows& rows, std::size_t row) {
   const std::size_t columns = rows.inputs + rows.outputs;
   return std::span(rows.numbers).subspan(row * columns, columns);
@@ -53,7 +48,7 @@ std::vector<Channel> channels_of(const AltaRows& rows, const std::string& name, 
     fail(output + " with " + std::to_string(rows.outputs) +
          " values is not allowed: 3, or 1 of INV_STERADIAN");
   }
-  if (output == "INV_STERADIAN") add(note, "three values without names: taken as R, G and B");
+  if (output == "INV_STERADIAN") add_note(note, "three values without names: taken as R, G and B");
   return rgb_channels();
 }
 
@@ -71,8 +66,8 @@ Table list_of(AltaRows rows, TableSpec spec, const std::string& name) {
     throw InputError(name + ": #DIM says " + std::to_string(rows.inputs) + " coordinates; " +
                      std::string(in.name) + " has " + std::to_string(in.dimension));
   }
-  add(spec.provenance.note, in.assumed);
-  if (rows.has_intervals) add(spec.provenance.note, "intervals of confidence were left out");
+  add_note(spec.provenance.note, in.assumed);
+  if (rows.has_intervals) add_note(spec.provenance.note, "intervals of confidence were left out");
   PairList list{{}, in.isotropic};
   list.pairs.reserve(rows.count());
   std::vector<double> values;

@@ -29,7 +29,7 @@ namespace clothbrdf {
 namespace {
 
 constexpr const char* kAttribute = "clothbrdf";
-constexpr std::string_view kOptions[] = {"--half", "--compress"};
+constexpr std::string_view kExrOptions[] = {"--half", "--compress"};
 
 // A file that remembers how far it was read: nothing may follow a table's last line.
 class CountingIStream final : public Imf::IStream {
@@ -275,7 +275,7 @@ Format exr_format() {
   return {.name = "EXR",
           .ending = ".exr",
           .summary = "any grid as a picture of floats, with a description that rebuilds the table",
-          .options = kOptions,
+          .options = kExrOptions,
           .default_samples = exr_samples,
           .colours = [](const WriteOptions&) { return Colours::kAny; },
           .keeps_description = true,

@@ -16,9 +16,9 @@ namespace {
 
 using nlohmann::json;
 
-class Reader {
+class FitFileReader {
  public:
-  Reader(const json& file, std::string name, std::filesystem::path folder)
+  FitFileReader(const json& file, std::string name, std::filesystem::path folder)
       : file_(file),
         name_(one_line(name, kLongestFileName)),
         full_name_(std::move(name)),
@@ -132,7 +132,7 @@ FitOptions parse_fit_file(std::string_view text, const std::string& name,
                           const std::filesystem::path& folder) {
   const json file = parse_json(text, name);
   check_against_schema(file, "fit.schema.json", name);
-  return Reader(file, name, folder).read();
+  return FitFileReader(file, name, folder).read();
 }
 
 }  // namespace clothbrdf

@@ -20,14 +20,14 @@ namespace {
 
 using nlohmann::json;
 
-struct Place {
+struct TextPlace {
   std::size_t line = 1;
   std::size_t column = 1;  // in characters
 };
 
 // `offset` may be one past the end.
-Place place_of(std::string_view text, std::size_t offset) {
-  Place place;
+TextPlace place_of(std::string_view text, std::size_t offset) {
+  TextPlace place;
   for (const char c : text.substr(0, offset)) {
     if (c == '\n') {
       ++place.line;
@@ -119,7 +119,7 @@ class StrictBuilder {
     }
     const std::size_t offset = std::min(position == 0 ? 0 : position - 1, text_.size());
     const std::string_view word = word_at(text_, offset);
-    const Place place = place_of(
+    const TextPlace place = place_of(
         text_, word.empty() ? offset : static_cast<std::size_t>(word.data() - text_.data()));
     std::string message =
         "line " + std::to_string(place.line) + ", column " + std::to_string(place.column);
@@ -310,7 +310,7 @@ nlohmann::json parse_json(std::string_view text, const std::string& file_name) {
   // The parser takes a zero byte for the end of the text and would not see what follows.
   const std::size_t zero = text.find('\0');
   if (zero != std::string_view::npos) {
-    const Place place = place_of(text, zero);
+    const TextPlace place = place_of(text, zero);
     builder.fail("line " + std::to_string(place.line) + ", column " + std::to_string(place.column) +
                  ": not JSON: a zero byte");
   }

@@ -24,7 +24,7 @@ using PatchMean = AdaptivePairMean<KlemsPatch>;
 // Cuts a pair, on average over the patches of the eye: easy ones leave theirs to the others.
 constexpr std::size_t kCutsPerPair = 6;
 // A relative 1e-16, times what the way through X, Y and Z loses of a saturated colour.
-constexpr StoredPrecision kPrecision = {1e-12, 0x1p-1074};
+constexpr StoredPrecision kKlemsPrecision = {1e-12, 0x1p-1074};
 
 // The patch that a direction's opposite azimuth falls into.
 std::size_t opposite(const KlemsBasis& basis, std::size_t patch) {
@@ -234,7 +234,7 @@ Table read_klems(const WindowFile& file) {
   }
   const std::size_t channels = coloured ? 3 : 1;
   auto lookup = std::make_shared<PatchLookup>(light, eye, values, channels);
-  return window_table(std::move(list), std::move(values), kPrecision, std::move(lookup));
+  return window_table(std::move(list), std::move(values), kKlemsPrecision, std::move(lookup));
 }
 
 Format klems_format() {
@@ -247,7 +247,7 @@ Format klems_format() {
       .colours = [](const WriteOptions&) { return Colours::kRgb; },
       .keeps_description = false,
       .averages = "detail within patches of 10 to 15 degrees: the mean over each pair of them",
-      .precision = [](const WriteOptions&) { return kPrecision; },
+      .precision = [](const WriteOptions&) { return kKlemsPrecision; },
       .check = check_klems,
       .layout = klems_layout,
       .write = write_klems,

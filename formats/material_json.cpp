@@ -6,6 +6,7 @@
 #include <span>
 #include <utility>
 
+#include "formats/fit_names.h"
 #include "formats/json_text.h"
 #include "formats/schema_check.h"
 #include "model/parameters.h"
@@ -20,34 +21,22 @@ using nlohmann::json;
 // Where editors find the schema: right for materials/ of the repository and of an installation.
 constexpr const char* kSchemaReference = "../data-schemas/material.schema.json";
 
-constexpr std::pair<Reflectance, const char*> kReflectanceNames[] = {
-    {Reflectance::kMicrofacet, "microfacet"}, {Reflectance::kPaper, "paper"}};
-constexpr std::pair<Paths, const char*> kPathsNames[] = {{Paths::kAll, "all"},
-                                                         {Paths::kSingle, "single"}};
-
-template <class Enum, std::size_t n>
-const char* name_of(const std::pair<Enum, const char*> (&names)[n], Enum value) {
-  for (const auto& [candidate, name] : names) {
-    if (candidate == value) return name;
-  }
-  return names[0].second;
-}
-
 // An absent key leaves `value` as it is. The schema has seen to it that the names are known.
-template <class Enum, std::size_t n>
-void read_name(const json& object, const char* key, const std::pair<Enum, const char*> (&names)[n],
-               Enum& value) {
+template <class T, std::size_t N>
+void read_choice(const json& object, const char* key, const ChoiceName<T> (&names)[N], T& value) {
   const auto found = object.find(key);
-  if (found == object.end()) return;
-  for (const auto& [candidate, name] : names) {
-    if (*found == name) value = candidate;
-  }
+  if (found != object.end()) value = find_choice(names, found->get<std::string>()).value();
 }
 
 template <class T>
 void read_value(const json& object, const char* key, T& value) {
   const auto found = object.find(key);
   if (found != object.end()) found->get_to(value);
+}
+
+template <class T, std::size_t N>
+std::string quoted_name(const ChoiceName<T> (&names)[N], T value) {
+  return '"' + std::string(choice_name(names, value)) + '"';
 }
 
 Yarn read_yarn(const json& object) {
@@ -100,8 +89,8 @@ Material parse_material(std::string_view text, const std::string& name) {
   Material material;
   read_value(file, "name", material.name);
   read_value(file, "description", material.description);
-  read_name(file, "reflectance", kReflectanceNames, material.reflectance);
-  read_name(file, "paths", kPathsNames, material.paths);
+  read_choice(file, "reflectance", kReflectanceNames, material.reflectance);
+  read_choice(file, "paths", kPathsNames, material.paths);
   const json& weights = file.at("weights");
   read_value(weights, "specular", material.weights.specular);
   read_value(weights, "internal", material.weights.internal);
@@ -127,9 +116,8 @@ std::string material_to_json(const Material& material) {
   if (!material.description.empty()) {
     text += ",\n  \"description\": " + written(material.description);
   }
-  text += std::string(",\n  \"reflectance\": \"") +
-          name_of(kReflectanceNames, material.reflectance) + '"';
-  text += std::string(",\n  \"paths\": \"") + name_of(kPathsNames, material.paths) + '"';
+  text += ",\n  \"reflectance\": " + quoted_name(kReflectanceNames, material.reflectance);
+  text += ",\n  \"paths\": " + quoted_name(kPathsNames, material.paths);
   text += ",\n  \"weights\": {\"specular\": " + written(weights.specular);
   text += ", \"internal\": " + written(weights.internal);
   text += ", \"diffuse\": " + written(weights.diffuse) + "}";

@@ -20,7 +20,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "the file is little-endian");
 
-constexpr std::string_view kOptions[] = {"--size"};
+constexpr std::string_view kMdlOptions[] = {"--size"};
 
 // The SDK counts nodes in 32 bits: n * n * 2 n must stay below 2^32.
 constexpr std::uint64_t kLargestSize = 1289;
@@ -30,7 +30,7 @@ constexpr std::uint64_t kSmallestSize = 2;
 std::uint64_t node_count(std::uint64_t n) { return n * n * 2 * n; }
 
 // Escaped as the specification has it.
-std::string escaped(std::string_view text) {
+std::string quoted_line(std::string_view text) {
   std::string result = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\') result += '\\';
@@ -42,7 +42,7 @@ std::string escaped(std::string_view text) {
 std::string header_text(const TableSpec& spec) {
   std::string text = kMdlMagic;
   if (!spec.provenance.program.empty()) {
-    text += "program=" + escaped(spec.provenance.program) + "\n";
+    text += "program=" + quoted_line(spec.provenance.program) + "\n";
   }
   text += "values=\"f_r, mean over rotations and both orders of the directions\"\n";
   return text + kMdlReflection;
@@ -173,7 +173,7 @@ Format mdl_format() {
   return {.name = "MDL",
           .ending = ".mbsdf",
           .summary = "isotropic table of NVIDIA's MDL, floats; the mean over phi_h",
-          .options = kOptions,
+          .options = kMdlOptions,
           .default_samples = mdl_samples,
           .colours = [](const WriteOptions&) { return Colours::kRgb; },
           .keeps_description = false,

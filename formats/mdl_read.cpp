@@ -75,13 +75,13 @@ class Cursor {
 };
 
 // The lower node, clamped, and the share of the next one.
-struct Between {
+struct NodePair {
   std::size_t lower;
   std::size_t upper;
   double upper_share;
 };
 
-Between between(double share_of_range, std::uint32_t size) {
+NodePair node_pair(double share_of_range, std::uint32_t size) {
   const double at = std::clamp(share_of_range * size - 0.5, 0.0, size - 1.0);
   const auto lower = static_cast<std::size_t>(at);
   return {lower, std::min(lower + 1, std::size_t{size} - 1), at - std::floor(at)};
@@ -93,9 +93,9 @@ class MdlInterpolant final : public Interpolant {
       : sizes_(sizes), values_(std::move(values)) {}
 
   bool interpolate(const Directions& d, std::span<double> values) const override {
-    const Between i = between(elevation(d.wi), sizes_.theta);
-    const Between o = between(elevation(d.wo), sizes_.theta);
-    const Between phi = between(azimuth_between(d), sizes_.phi);
+    const NodePair i = node_pair(elevation(d.wi), sizes_.theta);
+    const NodePair o = node_pair(elevation(d.wo), sizes_.theta);
+    const NodePair phi = node_pair(azimuth_between(d), sizes_.phi);
     std::fill(values.begin(), values.end(), 0.0);
     bool known = true;
     for (unsigned corner = 0; corner < 8; ++corner) {
@@ -155,8 +155,6 @@ bool take_mean_of_orders(const MdlSizes& sizes, std::vector<float>& values) {
   return differed;
 }
 
-void add(std::string& note, const std::string& text) { note += (note.empty() ? "" : "; ") + text; }
-
 // Lines key="value" up to the line before the data, which is returned.
 std::string_view read_keys(Cursor& cursor, std::string& note) {
   while (true) {
@@ -169,7 +167,7 @@ std::string_view read_keys(Cursor& cursor, std::string& note) {
         line.size() < equals + 3) {
       cursor.fail("'" + one_line(line) + "' is no line of the header: key=\"value\" is allowed");
     }
-    add(note, one_line(line, 200));
+    add_note(note, one_line(line, 200));
   }
 }
 
@@ -200,12 +198,12 @@ Table read_mdl(const std::filesystem::path& path) {
     if (cursor.line() != kTransmission) cursor.fail("bytes follow the last number");
     cursor.numbers(cursor.sizes());
     if (!cursor.at_end()) cursor.fail("bytes follow the last number");
-    add(note, "its block of transmission was left out");
+    add_note(note, "its block of transmission was left out");
   }
   std::vector<float> stored(numbers.size() / sizeof(float));
   std::memcpy(stored.data(), numbers.data(), numbers.size());
   if (take_mean_of_orders(sizes, stored)) {
-    add(note, "values of both orders of the directions differ: their mean was taken");
+    add_note(note, "values of both orders of the directions differ: their mean was taken");
   }
   PairList list{{}, true};
   list.pairs.reserve(sizes.node_count());

@@ -18,8 +18,8 @@ static_assert(std::endian::native == std::endian::little, "the file is little-en
 
 constexpr std::array<std::int32_t, 3> kSizes = {90, 90, 180};
 constexpr std::uint64_t kHeaderBytes = sizeof kSizes;
-constexpr std::uint64_t kCells = 90ULL * 90 * 180;
-constexpr std::uint64_t kFileBytes = kHeaderBytes + 3 * kCells * sizeof(double);
+constexpr std::uint64_t kMerlCells = 90ULL * 90 * 180;
+constexpr std::uint64_t kMerlBytes = kHeaderBytes + 3 * kMerlCells * sizeof(double);
 
 // Stored value = f_r * kStored.
 constexpr std::array<double, 3> kStored = {1500.0, 1500.0 / 1.15, 1500.0 / 1.66};
@@ -36,7 +36,7 @@ void check_merl(const TableSpec& spec, const WriteOptions& /*none*/, const std::
 
 void write_merl(const Producer& producer, AtomicFile& file, const WriteOptions& options) {
   const TableSpec& spec = producer.spec();
-  file.reserve(kFileBytes);
+  file.reserve(kMerlBytes);
   file.write_at(0, std::as_bytes(std::span(kSizes)));
   const std::size_t columns = spec.column_count();
   // values[row][channel][column]: the rows of one channel lie one after the other in the file.
@@ -55,7 +55,7 @@ void write_merl(const Producer& producer, AtomicFile& file, const WriteOptions& 
     for (std::size_t c = 0; c < 3; ++c) {
       for (std::size_t row = 0; row < rows.size(); ++row)
         rows[row] = std::as_bytes(row_of(values, row, c));
-      file.write_at(kHeaderBytes + (c * kCells + first_row * columns) * sizeof(double), rows);
+      file.write_at(kHeaderBytes + (c * kMerlCells + first_row * columns) * sizeof(double), rows);
     }
   };
   stream_rows(producer, options.workers, write, scale);
@@ -77,28 +77,28 @@ Table read_merl(const std::filesystem::path& path) {
                      std::to_string(sizes[1]) + " x " + std::to_string(sizes[2]) +
                      " cells; a MERL file has 90 x 90 x 180");
   }
-  if (bytes != kFileBytes) {
+  if (bytes != kMerlBytes) {
     throw InputError(path.string() + ": " + std::to_string(bytes) + " bytes; a MERL file has " +
-                     std::to_string(kFileBytes));
+                     std::to_string(kMerlBytes));
   }
   TableSpec spec{halfdiff3d(), rgb_channels(), {}, {}};
-  std::vector<double> values(3 * kCells);
+  std::vector<double> values(3 * kMerlCells);
   std::vector<std::uint8_t> valid = spec.grid().above_horizon(CellPart::kAny);
   const std::vector<std::uint8_t> nodes = spec.grid().above_horizon(CellPart::kNode);
-  std::vector<std::uint8_t> all_zero(kCells, 1);
-  std::vector<double> plane(kCells);
+  std::vector<std::uint8_t> all_zero(kMerlCells, 1);
+  std::vector<double> plane(kMerlCells);
   const std::size_t columns = spec.column_count();
   for (std::size_t c = 0; c < 3; ++c) {
     in.read(reinterpret_cast<char*>(plane.data()),
-            static_cast<std::streamsize>(kCells * sizeof(double)));
+            static_cast<std::streamsize>(kMerlCells * sizeof(double)));
     if (!in) throw InputError(path.string() + ": cannot read channel " + rgb_channels()[c].name);
-    for (std::size_t cell = 0; cell < kCells; ++cell) {
+    for (std::size_t cell = 0; cell < kMerlCells; ++cell) {
       values[(cell / columns * 3 + c) * columns + cell % columns] = plane[cell] / kStored[c];
       if (plane[cell] != 0) all_zero[cell] = 0;
     }
   }
   // Point values are 0 where the cell's centre is below the horizon: nothing was said of them.
-  for (std::size_t cell = 0; cell < kCells; ++cell) {
+  for (std::size_t cell = 0; cell < kMerlCells; ++cell) {
     if (all_zero[cell] != 0 && nodes[cell] == 0) valid[cell] = 0;
   }
   mask_not_measured(spec, values, valid);

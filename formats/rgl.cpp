@@ -12,7 +12,7 @@
 namespace clothbrdf {
 namespace {
 
-constexpr std::string_view kOptions[] = {"--flavour", "--size"};
+constexpr std::string_view kRglOptions[] = {"--flavour", "--size"};
 constexpr std::uint64_t kDefaultBytes = 5'000'000;
 
 bool spectral(const WriteOptions& options) {
@@ -50,7 +50,7 @@ Format rgl_format() {
       .name = "RGL",
       .ending = ".bsdf",
       .summary = "anisotropic table that renderers sample from, of any size",
-      .options = kOptions,
+      .options = kRglOptions,
       .default_samples = [](Reflectance, bool isotropic) -> Samples { return AnyPairs{isotropic}; },
       .colours =
           [](const WriteOptions& options) {

@@ -16,11 +16,7 @@
 namespace clothbrdf {
 namespace {
 
-double dot(const Vector3<double>& a, const Vector3<double>& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-SquarePoint node_of(std::size_t index, std::size_t side) {
+RglPoint node_of(std::size_t index, std::size_t side) {
   const double last = static_cast<double>(side - 1);
   const std::size_t row = index / side;
   return {static_cast<double>(index % side) / last, static_cast<double>(row) / last};
@@ -96,7 +92,7 @@ RglSlices::Nodes RglSlices::place_nodes(std::size_t phi, std::size_t theta,
   const Vector3<double> eye = direction_at(theta_eye, double{layout_.phi_i[phi]});
   const auto neighbours = neighbours_of(layout_, phi, theta);
   for (std::size_t k = 0; k < densities.size(); ++k) {
-    const SquarePoint u_m = node_of(k, s.density);
+    const RglPoint u_m = node_of(k, s.density);
     const Vector3<double> m = direction_at(square_theta(u_m.x), square_phi(u_m.y));
     densities[k] = static_cast<float>(density_at(eye, u_m.x, m));
   }
@@ -107,7 +103,7 @@ RglSlices::Nodes RglSlices::place_nodes(std::size_t phi, std::size_t theta,
   Nodes nodes{std::vector<Directions>(s.slice_cells()), std::vector<double>(s.slice_cells()),
               std::vector<double>(s.slice_cells())};
   for (std::size_t k = 0; k < s.slice_cells(); ++k) {
-    const SquarePoint u_m = warp.sample(node_of(k, s.square), slice);
+    const RglPoint u_m = warp.sample(node_of(k, s.square), slice);
     const Vector3<double> m = direction_at(square_theta(u_m.x), square_phi(u_m.y));
     const double cosine = dot(eye, m);
     Directions& pair = nodes.pairs[k];

@@ -16,10 +16,6 @@ constexpr double kPi = std::numbers::pi;
 // Angles are floats: half pi is rounded up.
 constexpr double kAngleRounding = 1e-6;
 
-double dot(const Vector3<double>& a, const Vector3<double>& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 struct AxisRange {
   double lowest;
   double highest;
@@ -148,27 +144,27 @@ Directions RglTensors::folded(const Directions& directions) const {
   return result;
 }
 
-SquarePoint RglTensors::half_vector_point(const Directions& directions) const {
+RglPoint RglTensors::half_vector_point(const Directions& directions) const {
   Vector3<double> m{};
   for (std::size_t a = 0; a < 3; ++a) m[a] = directions.wi[a] + directions.wo[a];
   const double turn = isotropic() ? azimuth(directions.wo) : 0;
   return {theta_to_square(elevation(m)), phi_to_square(azimuth(m) - turn)};
 }
 
-double RglTensors::scale(SquarePoint u_m, const Directions& directions) const {
+double RglTensors::scale(RglPoint u_m, const Directions& directions) const {
   const double light_cosine = directions.wi[2];
   if (!scaled_) return 1 / light_cosine;
-  const SquarePoint u_i = {theta_to_square(elevation(directions.wo)),
-                           (azimuth(directions.wo) + kPi) / (2 * kPi)};
+  const RglPoint u_i = {theta_to_square(elevation(directions.wo)),
+                        (azimuth(directions.wo) + kPi) / (2 * kPi)};
   return bilinear(ndf_.values, ndf_.rows, ndf_.columns, u_m) /
          (4 * bilinear(sigma_.values, sigma_.rows, sigma_.columns, u_i) * light_cosine);
 }
 
 bool RglTensors::interpolate(const Directions& directions, std::span<double> values) const {
   const Directions d = folded(directions);
-  const SquarePoint u_m = half_vector_point(d);
+  const RglPoint u_m = half_vector_point(d);
   const SliceBlend blend = blend_slices(phi_i_, theta_i_, azimuth(d.wo), elevation(d.wo));
-  const SquarePoint u = warp_.invert(u_m, blend);
+  const RglPoint u = warp_.invert(u_m, blend);
   const double factor = scale(u_m, d);
   const std::size_t slice = rows_ * columns_;
   std::fill(values.begin(), values.end(), 0.0);
@@ -188,9 +184,9 @@ Directions RglTensors::node(std::size_t index) const {
   const std::size_t column = index % columns_;
   const double phi = double{phi_i_[slice / theta_i_.size()]};
   const double theta = double{theta_i_[slice % theta_i_.size()]};
-  const SquarePoint u = {static_cast<double>(column) / static_cast<double>(columns_ - 1),
-                         static_cast<double>(row) / static_cast<double>(rows_ - 1)};
-  const SquarePoint u_m = warp_.sample(u, only_slice(slice));
+  const RglPoint u = {static_cast<double>(column) / static_cast<double>(columns_ - 1),
+                      static_cast<double>(row) / static_cast<double>(rows_ - 1)};
+  const RglPoint u_m = warp_.sample(u, only_slice(slice));
   const Vector3<double> wo = direction_at(theta, phi);
   const Vector3<double> m =
       direction_at(square_theta(u_m.x), square_phi(u_m.y) + (isotropic() ? phi : 0));

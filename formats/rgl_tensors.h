@@ -48,8 +48,8 @@ class RglTensors final : public Interpolant {
   void read_values(const TensorFile& file);
   Directions folded(const Directions& directions) const;
   /// What values are to be multiplied by.
-  double scale(SquarePoint u_m, const Directions& directions) const;
-  SquarePoint half_vector_point(const Directions& directions) const;
+  double scale(RglPoint u_m, const Directions& directions) const;
+  RglPoint half_vector_point(const Directions& directions) const;
 
   std::vector<float> phi_i_;
   std::vector<float> theta_i_;

@@ -9,7 +9,7 @@ namespace clothbrdf {
 
 /// A point of the unit square that stands for a direction above the horizon in RGL's files: x =
 /// sqrt(2 theta / pi), y = (phi + pi) / (2 pi). The ends of y are one azimuth.
-struct SquarePoint {
+struct RglPoint {
   double x;
   double y;
 };
@@ -26,6 +26,10 @@ inline double elevation(const Vector3<double>& v) {
 }
 
 inline double azimuth(const Vector3<double>& v) { return std::atan2(v[1], v[0]); }
+
+inline double dot(const Vector3<double>& a, const Vector3<double>& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 
 inline double theta_to_square(double theta) { return std::sqrt(theta * (2 / std::numbers::pi)); }
 

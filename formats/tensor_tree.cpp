@@ -18,12 +18,12 @@ constexpr int kSureDepth = 4;
 // Subtrees from here on are built in parallel.
 constexpr int kTaskDepth = 3;
 
-struct Place {
+struct TreePlace {
   int depth = 0;
   std::array<std::uint32_t, 4> at{};
 
-  Place child(std::size_t n) const {
-    Place result{depth + 1, at};
+  TreePlace child(std::size_t n) const {
+    TreePlace result{depth + 1, at};
     for (std::size_t axis = 0; axis < 4; ++axis) {
       result.at[axis] = 2 * at[axis] + static_cast<std::uint32_t>(n >> axis & 1U);
     }
@@ -101,7 +101,7 @@ class Builder {
           const BoxTree::Limits& limits)
       : producer_(producer), workers_(workers), rules_(rules), limits_(limits) {}
 
-  void build(const Place& place, std::vector<BoxTree::Box>& boxes) {
+  void build(const TreePlace& place, std::vector<BoxTree::Box>& boxes) {
     const std::size_t parent = boxes.size();
     boxes.emplace_back();
     if (place.depth < kSureDepth) {
@@ -127,7 +127,7 @@ class Builder {
   }
 
  private:
-  std::array<std::array<float, 3>, kChildren> child_means(const Place& place) {
+  std::array<std::array<float, 3>, kChildren> child_means(const TreePlace& place) {
     const std::array<SquareCell, 4> eyes = place.eye().quarters();
     std::array<std::array<float, 3>, kChildren> means{};
     pairs_.clear();
@@ -202,7 +202,7 @@ BoxTree BoxTree::build(const Producer& producer, const Workers& workers, const L
   for (std::size_t first = 0; first < kParts; first += kRound) {
     with_threads(workers.threads, [&] {
       tbb::parallel_for(first, first + kRound, [&](std::size_t k) {
-        const Place place = Place{}.child(k >> 8U).child(k >> 4U & 15U).child(k & 15U);
+        const TreePlace place = TreePlace{}.child(k >> 8U).child(k >> 4U & 15U).child(k & 15U);
         Builder(producer, workers, rules, now).build(place, parts[k]);
         prune_boxes(parts[k], now.error);
       });

@@ -12,7 +12,6 @@
 namespace clothbrdf {
 namespace {
 
-constexpr StoredPrecision kPrecision = {1e-5, 0x1p-149};
 // Cuts of an axis; what is finer is no measurement, and recursion ends.
 constexpr int kDeepest = 16;
 
@@ -218,7 +217,7 @@ Table read_tensor_tree(const WindowFile& file, int rank) {
     values.insert(values.end(), rgb.begin(),
                   rgb.begin() + static_cast<std::ptrdiff_t>(lookup->channels()));
   });
-  return window_table(std::move(list), std::move(values), kPrecision, std::move(lookup));
+  return window_table(std::move(list), std::move(values), kTensorTreePrecision, std::move(lookup));
 }
 
 }  // namespace clothbrdf

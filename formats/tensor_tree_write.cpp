@@ -20,9 +20,7 @@ constexpr int kDigits = 7;
 constexpr std::size_t kMostBoxes = 4000000;
 // A part holds 16 times the mean at most, and differs from it by 15 times.
 constexpr double kLargestError = 16;
-constexpr std::string_view kOptions[] = {"--size"};
-// The seventh digit of Y, u' and v', times what the way to a saturated colour loses.
-constexpr StoredPrecision kPrecision = {1e-5, 0x1p-149};
+constexpr std::string_view kTreeOptions[] = {"--size"};
 
 enum class Component { kVisible, kU, kV };
 constexpr Component kComponents[] = {Component::kVisible, Component::kU, Component::kV};
@@ -160,12 +158,12 @@ Format tensor_tree_format() {
       .name = "tensor tree",
       .ending = ".tree.xml",
       .summary = "nested boxes down to 128x128x128x128, for Radiance",
-      .options = kOptions,
+      .options = kTreeOptions,
       .default_samples = [](Reflectance, bool isotropic) -> Samples { return AnyPairs{isotropic}; },
       .colours = [](const WriteOptions&) { return Colours::kRgb; },
       .keeps_description = false,
       .averages = "detail within boxes: the mean over each",
-      .precision = [](const WriteOptions&) { return kPrecision; },
+      .precision = [](const WriteOptions&) { return kTensorTreePrecision; },
       .check = check_tensor_tree,
       .layout = tensor_tree_layout,
       .write = write_tensor_tree,

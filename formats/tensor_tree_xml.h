@@ -27,6 +27,9 @@ inline constexpr std::uint64_t kLeastTreeBytes = 4096;
 
 // Internal to formats/.
 
+/// The seventh digit of Y, u' and v', times what the way to a saturated colour loses.
+inline constexpr StoredPrecision kTensorTreePrecision = {1e-5, 0x1p-149};
+
 /// The table of a file with the structure TensorTree4 (rank 4) or TensorTree3, which is isotropic
 /// (rank 3): a pair at the centre of each box of Visible.
 Table read_tensor_tree(const WindowFile& file, int rank);

@@ -21,8 +21,8 @@ static_assert(std::endian::native == std::endian::little, "the file is little-en
 constexpr std::size_t kThetas = 6;
 constexpr std::size_t kPhis = 48;
 constexpr std::size_t kColumns = kThetas * kPhis;
-constexpr std::size_t kCells = kColumns * kColumns;
-constexpr std::size_t kFileBytes = 3 * kCells * sizeof(double);
+constexpr std::size_t kUtiaCells = kColumns * kColumns;
+constexpr std::size_t kUtiaBytes = 3 * kUtiaCells * sizeof(double);
 
 // f_r = kWhite * d(stored / kCodes), d with its straight part up to kStraight.
 constexpr double kWhite = 100;
@@ -99,7 +99,7 @@ class UtiaInterpolant final : public Interpolant {
       if (weight == 0) continue;
       const std::size_t cell = ((node[0] * kPhis + node[1]) * kThetas + node[2]) * kPhis + node[3];
       for (std::size_t c = 0; c < values.size(); ++c) {
-        values[c] += weight * stored_[c * kCells + cell];
+        values[c] += weight * stored_[c * kUtiaCells + cell];
       }
     }
     bool known = true;
@@ -139,7 +139,7 @@ void check_utia(const TableSpec& spec, const WriteOptions& /*none*/, const std::
 
 template <Function kEncode>
 void write_planes(const Producer& producer, AtomicFile& file, const WriteOptions& options) {
-  file.reserve(kFileBytes);
+  file.reserve(kUtiaBytes);
   // values[row][channel][column]: the rows of one channel lie one after the other in the file.
   const auto prepare = [](std::size_t, std::span<double> values) {
     std::transform(values.begin(), values.end(), values.begin(), kEncode);
@@ -150,7 +150,7 @@ void write_planes(const Producer& producer, AtomicFile& file, const WriteOptions
       for (std::size_t row = 0; row < rows.size(); ++row) {
         rows[row] = std::as_bytes(values.subspan((row * 3 + c) * kColumns, kColumns));
       }
-      file.write_at((c * kCells + first_row * kColumns) * sizeof(double), rows);
+      file.write_at((c * kUtiaCells + first_row * kColumns) * sizeof(double), rows);
     }
   };
   stream_rows(producer, options.workers, write, prepare);
@@ -159,13 +159,13 @@ void write_planes(const Producer& producer, AtomicFile& file, const WriteOptions
 std::vector<double> read_planes(const std::filesystem::path& path) {
   require_readable(path);
   const std::uintmax_t bytes = std::filesystem::file_size(path);
-  if (bytes != kFileBytes) {
+  if (bytes != kUtiaBytes) {
     throw InputError(path.string() + ": " + std::to_string(bytes) + " bytes; a UTIA file has " +
-                     std::to_string(kFileBytes));
+                     std::to_string(kUtiaBytes));
   }
-  std::vector<double> stored(3 * kCells);
+  std::vector<double> stored(3 * kUtiaCells);
   std::ifstream in(path, std::ios::binary);
-  in.read(reinterpret_cast<char*>(stored.data()), static_cast<std::streamsize>(kFileBytes));
+  in.read(reinterpret_cast<char*>(stored.data()), static_cast<std::streamsize>(kUtiaBytes));
   if (!in) throw InputError(path.string() + ": cannot be read");
   return stored;
 }
@@ -175,13 +175,13 @@ Table table_of(std::vector<double> stored, Function decode, std::string note) {
   spec.provenance.note = std::move(note);
   std::vector<double> values(stored.size());
   for (std::size_t c = 0; c < 3; ++c) {
-    for (std::size_t cell = 0; cell < kCells; ++cell) {
+    for (std::size_t cell = 0; cell < kUtiaCells; ++cell) {
       values[(cell / kColumns * 3 + c) * kColumns + cell % kColumns] =
-          decode(stored[c * kCells + cell]);
+          decode(stored[c * kUtiaCells + cell]);
     }
   }
   auto interpolant = std::make_shared<UtiaInterpolant>(std::move(stored), decode);
-  return {std::move(spec), std::move(values), std::vector<std::uint8_t>(kCells, 1),
+  return {std::move(spec), std::move(values), std::vector<std::uint8_t>(kUtiaCells, 1),
           StoredPrecision{}, std::move(interpolant)};
 }
 

@@ -76,8 +76,7 @@ SliceBlend only_slice(std::size_t slice) {
   return blend;
 }
 
-double bilinear(std::span<const float> values, std::size_t rows, std::size_t columns,
-                SquarePoint at) {
+double bilinear(std::span<const float> values, std::size_t rows, std::size_t columns, RglPoint at) {
   const Cell x = cell_of(at.x, columns);
   const Cell y = cell_of(at.y, rows);
   const float* const lower = values.data() + y.index * columns + x.index;
@@ -134,7 +133,7 @@ double Warp::blended(std::span<const double> of_slices, std::size_t per_slice, s
   return sum;
 }
 
-Warp::Patch Warp::patch(SquarePoint point, const SliceBlend& blend) const {
+Warp::Patch Warp::patch(RglPoint point, const SliceBlend& blend) const {
   Patch patch{cell_of(point.x, columns_), cell_of(point.y, rows_), 0, 0};
   const std::size_t at = patch.y.index * columns_ + patch.x.index;
   const auto row_blend = [&](std::size_t node) {
@@ -146,7 +145,7 @@ Warp::Patch Warp::patch(SquarePoint point, const SliceBlend& blend) const {
   return patch;
 }
 
-SquarePoint Warp::sample(SquarePoint u, const SliceBlend& blend) const {
+RglPoint Warp::sample(RglPoint u, const SliceBlend& blend) const {
   const std::size_t slice_size = rows_ * columns_;
   const auto marginal = [&](std::size_t row) { return blended(marginal_, rows_, row, blend); };
   const std::size_t row = find_interval(rows_, u.y, marginal);
@@ -171,7 +170,7 @@ SquarePoint Warp::sample(SquarePoint u, const SliceBlend& blend) const {
           (static_cast<double>(row) + y) / static_cast<double>(rows_ - 1)};
 }
 
-SquarePoint Warp::invert(SquarePoint u_m, const SliceBlend& blend) const {
+RglPoint Warp::invert(RglPoint u_m, const SliceBlend& blend) const {
   const Patch p = patch(u_m, blend);
   const std::size_t first = p.y.index * columns_;
   const auto sum = [&](std::size_t at) {
@@ -187,7 +186,7 @@ SquarePoint Warp::invert(SquarePoint u_m, const SliceBlend& blend) const {
   return {row_mass > 0 ? x / row_mass : 0, y};
 }
 
-double Warp::density(SquarePoint u_m, const SliceBlend& blend) const {
+double Warp::density(RglPoint u_m, const SliceBlend& blend) const {
   const Patch p = patch(u_m, blend);
   return lerp(p.left, p.right, p.x.rest) * static_cast<double>((rows_ - 1) * (columns_ - 1));
 }

@@ -45,15 +45,15 @@ class Warp {
   Warp(std::size_t rows, std::size_t columns, std::span<const float> densities);
 
   /// From even density to this one.
-  SquarePoint sample(SquarePoint u, const SliceBlend& blend) const;
+  RglPoint sample(RglPoint u, const SliceBlend& blend) const;
   /// Back again.
-  SquarePoint invert(SquarePoint u_m, const SliceBlend& blend) const;
+  RglPoint invert(RglPoint u_m, const SliceBlend& blend) const;
   /// At a point, in the measure of the square.
-  double density(SquarePoint u_m, const SliceBlend& blend) const;
+  double density(RglPoint u_m, const SliceBlend& blend) const;
 
  private:
   struct Patch;
-  Patch patch(SquarePoint point, const SliceBlend& blend) const;
+  Patch patch(RglPoint point, const SliceBlend& blend) const;
   double blended(std::span<const double> of_slices, std::size_t per_slice, std::size_t at,
                  const SliceBlend& blend) const;
 
@@ -65,7 +65,6 @@ class Warp {
 };
 
 /// Bilinear between values[row][column], whose nodes lie on the edges of the unit square.
-double bilinear(std::span<const float> values, std::size_t rows, std::size_t columns,
-                SquarePoint at);
+double bilinear(std::span<const float> values, std::size_t rows, std::size_t columns, RglPoint at);
 
 }  // namespace clothbrdf

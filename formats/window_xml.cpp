@@ -18,7 +18,7 @@ constexpr std::size_t kBufferBytes = std::size_t{1} << 20U;
 
 bool blank(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
-std::string_view trimmed(std::string_view text) {
+std::string_view without_blanks(std::string_view text) {
   while (!text.empty() && blank(text.front())) text.remove_prefix(1);
   while (!text.empty() && blank(text.back())) text.remove_suffix(1);
   return text;
@@ -27,10 +27,10 @@ std::string_view trimmed(std::string_view text) {
 char lower(char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); }
 
 std::string_view word(const pugi::xml_node& parent, const char* child) {
-  return trimmed(parent.child_value(child));
+  return without_blanks(parent.child_value(child));
 }
 
-std::string escaped(std::string_view text) {
+std::string xml_text(std::string_view text) {
   std::string result;
   for (const char c : text) {
     switch (c) {
@@ -56,8 +56,8 @@ std::string quoted(std::string_view text) {
 }  // namespace
 
 bool same_word(std::string_view a, std::string_view b) {
-  a = trimmed(a);
-  b = trimmed(b);
+  a = without_blanks(a);
+  b = without_blanks(b);
   return std::equal(a.begin(), a.end(), b.begin(), b.end(),
                     [](char x, char y) { return lower(x) == lower(y); });
 }
@@ -172,9 +172,9 @@ WindowWriter::WindowWriter(AtomicFile& file, const TableSpec& spec, std::string_
       "<Optical>\n"
       "<Layer>\n"
       "<Material>\n<Name>");
-  text(escaped(name.empty() ? "cloth" : name));
+  text(xml_text(name.empty() ? "cloth" : name));
   text("</Name>\n<Manufacturer>");
-  text(escaped(spec.provenance.program.empty() ? "unknown" : spec.provenance.program));
+  text(xml_text(spec.provenance.program.empty() ? "unknown" : spec.provenance.program));
   text("</Manufacturer>\n<DeviceType>Other</DeviceType>\n</Material>\n<DataDefinition>\n");
   text(definition);
   text("</DataDefinition>\n");

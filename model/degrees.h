@@ -1,10 +1,14 @@
 #pragma once
 
 #include <cmath>
+#include <numbers>
 
 #include "model/scalar.h"
 
 namespace clothbrdf {
+
+inline constexpr double kRightAngle = std::numbers::pi / 2;  ///< radians
+inline constexpr double kRadian = std::numbers::pi / 180;    ///< one degree, radians
 
 /// Sine and cosine of one angle.
 template <class T>

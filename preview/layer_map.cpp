@@ -10,7 +10,6 @@
 namespace clothbrdf {
 namespace {
 
-constexpr int kLetterHeight = 7 * kPlotText;
 constexpr int kBelow = 56;  // numbers and name of the axis
 constexpr int kRight = 40;
 constexpr int kNarrowest = 420;  // holds the title

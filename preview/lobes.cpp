@@ -3,16 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <vector>
+
+#include "model/degrees.h"
 
 namespace clothbrdf {
 namespace {
 
 constexpr int kAngles = 361;  // of theta_o from -90 to 90 degrees
 constexpr int kSamples = 4;   // along each edge of a pixel, against jagged outlines
-constexpr double kRadian = std::numbers::pi / 180;
-
 constexpr Rgb kPaper = {0.012, 0.012, 0.014};
 constexpr Rgb kRing = {0.06, 0.06, 0.07};
 constexpr Rgb kLight = {0.9, 0.75, 0.25};

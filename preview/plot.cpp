@@ -11,7 +11,6 @@ namespace clothbrdf {
 namespace {
 
 constexpr double kLogarithmicFrom = 20;  // largest over smallest value
-constexpr int kLetterHeight = 7 * kPlotText;
 
 bool drawable(double value) { return value >= 0 && value <= kMostDrawn; }
 

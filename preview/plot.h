@@ -46,6 +46,7 @@ inline constexpr int kPlotWidth = 520;
 inline constexpr int kPlotHeight = 360;
 inline constexpr Box kPlotFrame = {78, 54, 424, 250};  ///< where the curves are
 inline constexpr int kPlotText = 2;                    ///< scale of its letters
+inline constexpr int kLetterHeight = 7 * kPlotText;
 inline const Rgb kPlotPaper = {1, 1, 1};
 inline const Rgb kPlotInk = {0.02, 0.02, 0.02};
 inline const Rgb kPlotFaint = {0.84, 0.84, 0.84};

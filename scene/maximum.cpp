@@ -6,11 +6,11 @@
 namespace clothbrdf {
 namespace {
 
-struct Candidate {
+struct BoundedBox {
   double high;
   LitBox lit;
 
-  bool operator<(const Candidate& other) const { return high < other.high; }
+  bool operator<(const BoundedBox& other) const { return high < other.high; }
 };
 
 // Azimuths count by how far they move a direction.
@@ -32,7 +32,7 @@ bool is_point(const AngleBox& box) {
 
 Maximum maximum(const BoxBounds& bounds, std::span<const LitBox> boxes, const Enough& enough,
                 const Workers& workers) {
-  std::vector<Candidate> heap;
+  std::vector<BoundedBox> heap;
   double low = enough.reached;
   double settled = 0;  // the largest upper bound of boxes that are points
   const auto add = [&](const LitBox& lit, double at_most) {
@@ -48,7 +48,7 @@ Maximum maximum(const BoxBounds& bounds, std::span<const LitBox> boxes, const En
     if (high() <= std::max(enough.ratio * low, enough.negligible) || low > enough.too_much) break;
     workers.check();
     std::pop_heap(heap.begin(), heap.end());
-    const Candidate top = heap.back();
+    const BoundedBox top = heap.back();
     heap.pop_back();
     if (is_point(top.lit.box)) {
       settled = std::max(settled, top.high);
@@ -63,7 +63,7 @@ Maximum maximum(const BoxBounds& bounds, std::span<const LitBox> boxes, const En
   std::sort_heap(heap.begin(), heap.end());
   constexpr std::size_t kBest = 8;
   for (std::size_t k = 0; k < std::min(kBest, heap.size()); ++k) {
-    const Candidate& candidate = heap[heap.size() - 1 - k];
+    const BoundedBox& candidate = heap[heap.size() - 1 - k];
     found.best.push_back({candidate.high, candidate.lit});
   }
   return found;

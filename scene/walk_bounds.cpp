@@ -33,7 +33,7 @@ Ends ends_of(double refractive_index, double absorption, const Interval& cos_the
 // Stacks of layers, from interface i (0 to 2 N) on, for one r and passage.
 class Stacks {
  public:
-  Stacks(int layers, double r, double once) : r_(r), twice_(once * once) {
+  Stacks(int layers, double r, double once) : twice_(once * once) {
     const auto interfaces = 2 * static_cast<std::size_t>(layers);
     reflects_.assign(interfaces + 1, 0.0);
     for (std::size_t i = interfaces; i-- > 0;) {
@@ -50,7 +50,6 @@ class Stacks {
   double below(std::size_t i) const { return i % 2 == 0 ? twice_ : 1; }
 
  private:
-  double r_;
   double twice_;
   std::vector<double> reflects_;
 };

@@ -4,20 +4,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <span>
 #include <utility>
 
+#include "model/degrees.h"
 #include "support/threads.h"
 
 namespace clothbrdf {
 namespace {
 
-constexpr double kRadian = std::numbers::pi / 180;
 constexpr int kAzimuths = 16;
 // Azimuths that a symmetry makes equal differ by roundings; the first of them is named.
-constexpr double kTie = 1e-9;
+constexpr double kAzimuthTie = 1e-9;
 
 /// Steps of a rule of midpoints in theta and in phi, degrees.
 struct Step {
@@ -191,7 +190,7 @@ std::vector<Albedo> albedo_by_theta(const Table& table, const Workers& workers) 
     const std::span<const Albedo> at_theta = std::span(all).subspan(t * of_theta, of_theta);
     Albedo largest = at_theta.front();
     for (const Albedo& albedo : at_theta) {
-      if (albedo.value > largest.value * (1 + kTie)) largest = albedo;
+      if (albedo.value > largest.value * (1 + kAzimuthTie)) largest = albedo;
     }
     by_theta.push_back(largest);
   }

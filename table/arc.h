@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "model/degrees.h"
 #include "table/interval.h"
 
 namespace clothbrdf {
@@ -11,7 +12,6 @@ namespace clothbrdf {
 // Internal to table/: azimuths, radians.
 
 inline constexpr double kHalfTurn = std::numbers::pi;
-inline constexpr double kRightAngle = kHalfTurn / 2;
 /// Bounds that meet may be apart by this: more than all roundings together.
 inline constexpr double kArcRounding = 1e-9;
 

@@ -9,14 +9,13 @@
 
 #include "support/errors.h"
 #include "table/resample.h"
+#include "table/sampled_error.h"
 
 namespace clothbrdf {
 namespace {
 
-constexpr double kPercentile = 0.99;
 // Cells that a symmetry makes equal differ by roundings; the first of them is named.
-constexpr double kTie = 1e-9;
-constexpr double kFloor = 1e-3;  // share of the mean below which differences are not relative
+constexpr double kCellTie = 1e-9;
 
 struct SharedChannel {
   std::size_t a;
@@ -86,8 +85,9 @@ ChannelDifference difference(const Table& a, const Table& b, const SharedChannel
     squares += size * weight * off * off;
     all_squares += size * weight * of_a * of_a;
     // Where all of a is 0, so is what a difference could be relative to.
-    relative.push_back({off == 0 ? 0 : std::abs(off) / (std::abs(of_a) + kFloor * mean), size});
-    if (relative.back().difference > d.max * (1 + kTie)) {
+    relative.push_back(
+        {off == 0 ? 0 : std::abs(off) / (std::abs(of_a) + kRelativeFloor * mean), size});
+    if (relative.back().difference > d.max * (1 + kCellTie)) {
       d.max = relative.back().difference;
       d.worst_cell = cell;
     }

@@ -5,8 +5,9 @@
 #include <boost/geometry/index/rtree.hpp>
 #include <cmath>
 #include <iterator>
-#include <numbers>
 #include <utility>
+
+#include "model/degrees.h"
 
 namespace clothbrdf {
 namespace {
@@ -72,7 +73,6 @@ bool NearestSample::interpolate(const Directions& directions, std::span<double> 
   const auto nearest = index_->tree.qbegin(bg::index::nearest(asked, 1));
   if (nearest == index_->tree.qend()) return false;
   // The chord of both angles together is no shorter than that of the larger one.
-  constexpr double kRadian = std::numbers::pi / 180;
   static const double kFarthest = 2 * std::sin(kFarthestDeg * kRadian / 2);
   if (bg::distance(asked, nearest->first) > kFarthest) return false;
   const auto first =

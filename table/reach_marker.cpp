@@ -9,8 +9,6 @@
 namespace clothbrdf {
 namespace {
 
-constexpr double kRadian = kHalfTurn / 180;
-
 Interval radians(const AngleRange& degrees) {
   return {degrees.low * kRadian, degrees.high * kRadian};
 }

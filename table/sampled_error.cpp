@@ -9,8 +9,6 @@ namespace clothbrdf {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kPercentile = 0.99;
-constexpr double kFloor = 1e-3;  // share of the mean below which differences are not relative
 
 // The second half of the pairs: tan theta_h with the density of a round lobe of this width, about
 // that of the presets' lobes, and cos theta_d with a density that grows as 1/sqrt towards 0.
@@ -107,7 +105,8 @@ TableError table_error(const SampledPairs& sampled, std::span<const double> exac
     const double off = read[k] - exact[k];
     squares += weight * off * off;
     all_squares += weight * exact[k] * exact[k];
-    differences.push_back({off == 0 ? 0 : std::abs(off) / (exact[k] + kFloor * mean), share});
+    differences.push_back(
+        {off == 0 ? 0 : std::abs(off) / (exact[k] + kRelativeFloor * mean), share});
     error.max = std::max(error.max, differences.back().relative);
   }
   error.rms = squares == 0 ? 0 : std::sqrt(squares / all_squares);

@@ -25,6 +25,10 @@ inline constexpr double kSampledTheta = 85;
 /// the same seed.
 SampledPairs sampled_pairs(std::size_t count, std::uint64_t seed);
 
+// Of TableError and of the differences of two tables.
+inline constexpr double kPercentile = 0.99;
+inline constexpr double kRelativeFloor = 1e-3;  ///< differences are relative to f + this x mean f
+
 /// How far values read from a table are from the exact ones (docs/accuracy.md).
 struct TableError {
   double rms = 0;  ///< sqrt(sum w (read - f)^2 / sum w f^2), w = (cos theta_i cos theta_o)^2

@@ -7,6 +7,12 @@
 
 namespace clothbrdf {
 
+void add_note(std::string& note, std::string_view more) {
+  if (more.empty()) return;
+  if (!note.empty()) note += "; ";
+  note += more;
+}
+
 std::string wavelength_name(double wavelength_nm) {
   std::string name = number_text(wavelength_nm) + "nm";
   std::replace(name.begin(), name.end(), '.', '_');

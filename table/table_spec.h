@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -61,6 +62,9 @@ struct Provenance {
 
   bool operator==(const Provenance&) const = default;
 };
+
+/// Adds to a note for people, after "; " where it has text; nothing where `more` is empty.
+void add_note(std::string& note, std::string_view more);
 
 /// Samples that lie on no grid: a cell, and a row, for each pair.
 struct PairList {

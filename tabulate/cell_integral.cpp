@@ -2,13 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 namespace clothbrdf {
 namespace {
 
-constexpr double kRightAngle = std::numbers::pi / 2;
 constexpr int kMostHalvings = 24;
 
 // Where directions of |cos phi_d| = u sink below the horizon: tan(theta_h) tan(theta_d) u = 1.

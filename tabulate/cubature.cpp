@@ -10,7 +10,7 @@ namespace {
 // The two rules can agree by chance: they must agree ten times better than asked.
 constexpr double kSafety = 0.1;
 
-struct Part {
+struct Piece {
   Box4 box;
   std::vector<double> integral;
   std::vector<double> error;
@@ -23,7 +23,7 @@ class GenzMalik {
   GenzMalik(const Integrand4& integrand, std::size_t count)
       : integrand_(integrand), count_(count) {}
 
-  Part apply(const Box4& box) {
+  Piece apply(const Box4& box) {
     static const double kNear = std::sqrt(9.0 / 70);
     static const double kFar = std::sqrt(9.0 / 10);
     static const double kCorner = std::sqrt(9.0 / 19);
@@ -49,7 +49,7 @@ class GenzMalik {
 
     // In the same order.
     next_ = 0;
-    Part part{box, std::vector<double>(count_), std::vector<double>(count_)};
+    Piece part{box, std::vector<double>(count_), std::vector<double>(count_)};
     const std::vector<double> centre = sum(1);
     std::vector<double> near(count_);
     std::vector<double> far(count_);
@@ -119,10 +119,10 @@ class GenzMalik {
   std::size_t next_ = 0;
 };
 
-std::vector<double> total(const std::vector<Part>& parts, std::vector<double> Part::*what,
+std::vector<double> total(const std::vector<Piece>& parts, std::vector<double> Piece::*what,
                           std::size_t count) {
   std::vector<double> sum(count);
-  for (const Part& part : parts) {
+  for (const Piece& part : parts) {
     for (std::size_t c = 0; c < count; ++c) sum[c] += (part.*what)[c];
   }
   return sum;
@@ -134,7 +134,7 @@ std::optional<std::vector<double>> integrate4(const Integrand4& integrand, const
                                               std::size_t count, double tolerance,
                                               const CoarseVariable& coarse) {
   GenzMalik rule(integrand, count);
-  std::vector<Part> parts;
+  std::vector<Piece> parts;
   std::vector<Box4> open = {box};
   while (!open.empty()) {
     Box4 lower = open.back();
@@ -149,33 +149,33 @@ std::optional<std::vector<double>> integrate4(const Integrand4& integrand, const
       parts.push_back(rule.apply(lower));
     }
   }
-  std::vector<double> whole = total(parts, &Part::integral, count);
-  std::vector<double> error = total(parts, &Part::error, count);
-  const auto rate = [&](Part& part) {
+  std::vector<double> whole = total(parts, &Piece::integral, count);
+  std::vector<double> error = total(parts, &Piece::error, count);
+  const auto rate = [&](Piece& part) {
     part.worst = 0;
     for (std::size_t c = 0; c < count; ++c) {
       if (part.error[c] > 0) part.worst = std::max(part.worst, part.error[c] / std::abs(whole[c]));
     }
   };
-  const auto by_worst = [](const Part& a, const Part& b) { return a.worst < b.worst; };
+  const auto by_worst = [](const Piece& a, const Piece& b) { return a.worst < b.worst; };
   const auto done = [&] {
     for (std::size_t c = 0; c < count; ++c) {
       if (error[c] > kSafety * tolerance * std::abs(whole[c])) return false;
     }
     return true;
   };
-  for (Part& part : parts) rate(part);
+  for (Piece& part : parts) rate(part);
   std::make_heap(parts.begin(), parts.end(), by_worst);
   while (!done()) {
     if (parts.size() > kMostParts) return std::nullopt;
     std::pop_heap(parts.begin(), parts.end(), by_worst);
-    const Part worst = std::move(parts.back());
+    const Piece worst = std::move(parts.back());
     parts.pop_back();
     for (const bool upper : {false, true}) {
       Box4 half = worst.box;
       const std::size_t v = worst.roughest;
       (upper ? half.low : half.high)[v] = (worst.box.low[v] + worst.box.high[v]) / 2;
-      Part part = rule.apply(half);
+      Piece part = rule.apply(half);
       for (std::size_t c = 0; c < count; ++c) {
         whole[c] += part.integral[c] - (upper ? 0 : worst.integral[c]);
         error[c] += part.error[c] - (upper ? 0 : worst.error[c]);
@@ -185,7 +185,7 @@ std::optional<std::vector<double>> integrate4(const Integrand4& integrand, const
       std::push_heap(parts.begin(), parts.end(), by_worst);
     }
   }
-  return total(parts, &Part::integral, count);
+  return total(parts, &Piece::integral, count);
 }
 
 }  // namespace clothbrdf

@@ -2,12 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace clothbrdf {
 namespace {
-
-constexpr double kRightAngle = std::numbers::pi / 2;
 
 // asin of a ratio that rounding may push past 1.
 double clamped_asin(double numerator, double denominator) {

@@ -3,16 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
+#include "model/degrees.h"
 #include "tabulate/cell_integral.h"
 #include "tabulate/path_panels.h"
 
 namespace clothbrdf {
 namespace {
-
-constexpr double kRadian = std::numbers::pi / 180;
 
 // Share of the tolerance that interpolation may use up.
 constexpr double kInterpolationShare = 0.1;

@@ -2,17 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "model/degrees.h"
 #include "model/parameters.h"
 #include "support/errors.h"
 
 namespace clothbrdf {
-namespace {
-
-constexpr double kRadian = std::numbers::pi / 180;
-
-}  // namespace
+namespace {}  // namespace
 
 /// Arrays for the pairs of one call.
 struct InOutAverage::Workspace {

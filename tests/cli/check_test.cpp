@@ -16,7 +16,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 // Checks a file in which something is wrong: the whole report on standard output, one line of it on
 // standard error, exit code 1. Returns the report.
-std::string report_of(const std::string& file) {
+std::string check_report(const std::string& file) {
   const Outcome outcome = run_program({"check", file});
   INFO(outcome.out << outcome.err);
   CHECK(outcome.exit_code == 1);
@@ -79,13 +79,14 @@ TEST_CASE("check finds a value that is no number, and a negative one") {
   const std::string file = (folder / "table.exr").string();
   const Table clean = preset_table("cotton", halfdiff3d(6, 6, 6));
   write_table(with_value(clean, 9, 1, kNan), file);
-  CHECK_THAT(report_of(file), ContainsSubstring("not finite: 1 values; the first is nan in G at " +
-                                                clean.spec().grid().place(9)));
+  CHECK_THAT(check_report(file),
+             ContainsSubstring("not finite: 1 values; the first is nan in G at " +
+                               clean.spec().grid().place(9)));
   write_table(with_value(clean, 9, 2, -0.25), file);
-  CHECK_THAT(report_of(file),
+  CHECK_THAT(check_report(file),
              ContainsSubstring("negative: 1 values; the lowest is -0.25 in B at "));
   write_table(with_value(with_value(clean, 9, 2, -0.25), 8, 0, kNan), file);
-  report_of(file);
+  check_report(file);
   CHECK_THAT(run_program({"check", file}).err, ContainsSubstring(" (and 1 more)\n"));
 }
 
@@ -96,7 +97,7 @@ TEST_CASE("check finds a reciprocity break, of half floats only one beyond their
   const std::size_t cell =
       clean.spec().grid().cell_of(direction(30.0, 90.0), direction(60.0, 0.0)).value();
   write_table(with_value(clean, cell, 0, clean.value(cell, 0) * 1.0001), file);
-  CHECK_THAT(report_of(file), ContainsSubstring("reciprocity: f(wi,wo) and f(wo,wi) differ by"));
+  CHECK_THAT(check_report(file), ContainsSubstring("reciprocity: f(wi,wo) and f(wo,wi) differ by"));
   const WriteOptions half{.half = true, .compress = false, .workers = 1};
   write_table(with_value(clean, cell, 0, clean.value(cell, 0) * 1.0001), file, half);
   CHECK_THAT(output_of({"check", file}), ContainsSubstring("nothing wrong"));
@@ -119,7 +120,7 @@ TEST_CASE("check finds more light out than in") {
   const std::string file = (folder / "table.exr").string();
   output_of({"tabulate", (folder / "bright.json").string(), "--grid", "halfdiff4d:12x6x12x12", "-o",
              file});
-  const std::string report = report_of(file);
+  const std::string report = check_report(file);
   CHECK_THAT(report, ContainsSubstring("albedo: "));
   CHECK_THAT(report, ContainsSubstring(" is above 1.01\n"));
 }

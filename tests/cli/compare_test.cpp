@@ -8,7 +8,7 @@ namespace {
 
 using nlohmann::json;
 
-void tabulate(const std::string& file, const Arguments& options) {
+void write_silk(const std::string& file, const Arguments& options) {
   Arguments all = {"tabulate", preset("silk").string(), "-o", file};
   all.insert(all.end(), options.begin(), options.end());
   output_of(all);
@@ -20,8 +20,8 @@ TEST_CASE("compare finds a half-float table within half a unit of the last place
   const TemporaryFolder folder;
   const std::string a = (folder / "a.exr").string();
   const std::string b = (folder / "b.exr").string();
-  tabulate(a, {"--grid", "halfdiff4d:10x6x10x10"});
-  tabulate(b, {"--grid", "halfdiff4d:10x6x10x10", "--half"});
+  write_silk(a, {"--grid", "halfdiff4d:10x6x10x10"});
+  write_silk(b, {"--grid", "halfdiff4d:10x6x10x10", "--half"});
   const json told = json_of({"compare", a, b});
   CHECK(told["a"] == a);
   CHECK(told["b"] == b);

@@ -12,10 +12,8 @@ namespace {
 
 using nlohmann::json;
 
-Table table_of(const std::filesystem::path& file) { return format_for(file).read(file); }
-
-void tabulate(const std::filesystem::path& file, const std::string& grid,
-              const Arguments& options = {}) {
+void write_silk_table(const std::filesystem::path& file, const std::string& grid,
+                      const Arguments& options = {}) {
   Arguments all = {"tabulate", preset("silk").string(), "--grid", grid, "-o", file.string()};
   all.insert(all.end(), options.begin(), options.end());
   output_of(all);
@@ -37,7 +35,7 @@ TEST_CASE("an EXR table on MERL's grid goes to MERL and back to the same floats"
   const std::string exr = (folder / "a.exr").string();
   const std::string binary = (folder / "a.binary").string();
   const std::string back = (folder / "b.exr").string();
-  tabulate(exr, "halfdiff3d");
+  write_silk_table(exr, "halfdiff3d");
   const json there = json_of({"convert", exr, binary});
   CHECK(there["file"] == binary);
   CHECK(there["from"] == exr);
@@ -51,7 +49,7 @@ TEST_CASE("an EXR table on MERL's grid goes to MERL and back to the same floats"
   CHECK_THAT(output_of({"convert", binary, back}),
              ContainsSubstring("\n  lost: digits: rounded by"));
   CHECK(folder.entry_count() == 3);
-  CHECK(same_values(table_of(exr), table_of(back)));
+  CHECK(same_values(read_table(exr), read_table(back)));
 }
 
 TEST_CASE("negative marks of a MERL table survive the way to EXR and back") {
@@ -71,7 +69,7 @@ TEST_CASE("negative marks of a MERL table survive the way to EXR and back") {
   write_table(Table(spec, values, expected), first);
   output_of({"convert", first, exr});
   output_of({"convert", exr, last});
-  const Table table = table_of(last);
+  const Table table = read_table(last);
   std::size_t other_mask = 0;
   std::size_t other_values = 0;
   for (std::size_t cell = 0; cell < spec.cell_count(); ++cell) {
@@ -88,14 +86,14 @@ TEST_CASE("convert says what is lost, and how far off the old nodes are") {
   const TemporaryFolder folder;
   const std::string in = (folder / "a.exr").string();
   const std::string out = (folder / "b.exr").string();
-  tabulate(in, "halfdiff4d:12x6x12x12", {"--components"});
+  write_silk_table(in, "halfdiff4d:12x6x12x12", {"--components"});
 
   const json nothing = json_of({"convert", in, out});
   CHECK(nothing["lost"].empty());
   CHECK(nothing["channels"] == 12);
   CHECK_THAT(output_of({"convert", in, out}), ContainsSubstring("  lost: nothing\n"));
-  CHECK(same_values(table_of(in), table_of(out)));
-  CHECK(table_of(in).spec() == table_of(out).spec());
+  CHECK(same_values(read_table(in), read_table(out)));
+  CHECK(read_table(in).spec() == read_table(out).spec());
 
   const json half = json_of({"convert", "--half", in, out});
   CHECK(half["lost"] ==
@@ -111,7 +109,7 @@ TEST_CASE("convert says what is lost, and how far off the old nodes are") {
   CHECK(resampled["error"]["rms"].get<double>() > 0.01);
   CHECK(resampled["error"]["max"].get<double>() >= resampled["error"]["p99"].get<double>());
   CHECK(resampled["grid"] == "halfdiff3d:20x20x20");
-  CHECK(table_of(out).spec().grid() == halfdiff3d(20, 20, 20));
+  CHECK(read_table(out).spec().grid() == halfdiff3d(20, 20, 20));
   CHECK_THAT(output_of({"convert", "--grid", "inout:4x6x4x6", in, out}),
              ContainsSubstring("\n  relative error at the old nodes: rms "));
 }
@@ -120,7 +118,7 @@ TEST_CASE("a table that MERL cannot hold is resampled, its components left out")
   const TemporaryFolder folder;
   const std::string in = (folder / "a.exr").string();
   const std::string out = (folder / "a.binary").string();
-  tabulate(in, "inout:4x4x4x6", {"--components"});
+  write_silk_table(in, "inout:4x4x4x6", {"--components"});
   const json told = json_of({"convert", in, out});
   for (const char* what : {"anisotropy", "the nodes", "the components", "the description"}) {
     INFO(what);
@@ -128,7 +126,7 @@ TEST_CASE("a table that MERL cannot hold is resampled, its components left out")
   }
   CHECK(told["channels"] == 3);
   CHECK(told.contains("error"));
-  const Table table = table_of(out);
+  const Table table = read_table(out);
   CHECK(table.spec().grid() == halfdiff3d());
   CHECK(table.value(0, 0) > 0.05);
 }
@@ -139,25 +137,25 @@ TEST_CASE("the paper's convention keeps both orders in EXR, and is told to lose 
   const std::string out = (folder / "b.exr").string();
   output_of({"tabulate", preset("silk_paper").string(), "--grid", "halfdiff4d:6x4x6x8", "-o", in});
   CHECK(!loses(json_of({"convert", "--grid", "halfdiff4d:7x4x6x8", in, out}), "the order"));
-  CHECK(table_of(out).spec().grid().axes.back().highest_deg == 360);
+  CHECK(read_table(out).spec().grid().axes.back().highest_deg == 360);
 }
 
 TEST_CASE("a table may be converted onto itself") {
   const TemporaryFolder folder;
   const std::string file = (folder / "a.exr").string();
-  tabulate(file, "halfdiff4d:6x4x6x6");
-  const Table before = table_of(file);
+  write_silk_table(file, "halfdiff4d:6x4x6x6");
+  const Table before = read_table(file);
   output_of({"convert", "--compress", file, file});
   CHECK(folder.entry_count() == 1);
-  CHECK(same_values(before, table_of(file)));
-  CHECK(before.spec() == table_of(file).spec());
+  CHECK(same_values(before, read_table(file)));
+  CHECK(before.spec() == read_table(file).spec());
 }
 
 TEST_CASE("convert refuses what it cannot do and leaves nothing behind") {
   const TemporaryFolder folder;
   const std::string in = (folder / "a.exr").string();
   const auto in_folder = [&](const char* name) { return (folder / name).string(); };
-  tabulate(in, "halfdiff4d:6x4x6x6");
+  write_silk_table(in, "halfdiff4d:6x4x6x6");
   const Arguments refused[] = {
       {in, in_folder("b.png")},
       {in, in_folder("b")},

@@ -1,13 +1,12 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/catch.h"
+#include "tests/support/commands.h"
 #include "tests/support/run_program.h"
 #include "tests/support/temporary_folder.h"
 
 namespace clothbrdf::test {
 namespace {
-
-const std::string kSilk = preset("silk").string();
 
 struct BadCommandLine {
   Arguments arguments;
@@ -24,7 +23,7 @@ void check_refused(const std::vector<BadCommandLine>& cases) {
 }
 
 // Arguments of a tabulate that would write the file, were the last ones not bad.
-Arguments tabulate(const std::string& file, const Arguments& bad) {
+Arguments silk_table(const std::string& file, const Arguments& bad) {
   Arguments arguments = {"tabulate", kSilk, "-o", file};
   arguments.insert(arguments.end(), bad.begin(), bad.end());
   return arguments;
@@ -135,13 +134,13 @@ TEST_CASE("what a format cannot hold is refused with the option's name") {
   const TemporaryFolder folder;
   const std::string binary = (folder / "x.binary").string();
   check_refused({
-      {tabulate(binary, {"--grid", "inout"}),
+      {silk_table(binary, {"--grid", "inout"}),
        {binary + ": the grid inout:6x48x6x48 is not allowed", "halfdiff3d:90x90x180 only"}},
-      {tabulate(binary, {"--half"}), {binary + ": --half is not allowed"}},
-      {tabulate(binary, {"--compress"}), {binary + ": --compress is not allowed"}},
-      {tabulate(binary, {"--components"}), {binary + ": 12 channels", "R, G and B only"}},
-      {tabulate((folder / "x.exr").string(), {"-o", binary, "--half"}), {binary + ": --half"}},
-      {tabulate((folder / "x.exr").string(), {"--grid", "inout:1x1x1000000x1000000"}),
+      {silk_table(binary, {"--half"}), {binary + ": --half is not allowed"}},
+      {silk_table(binary, {"--compress"}), {binary + ": --compress is not allowed"}},
+      {silk_table(binary, {"--components"}), {binary + ": 12 channels", "R, G and B only"}},
+      {silk_table((folder / "x.exr").string(), {"-o", binary, "--half"}), {binary + ": --half"}},
+      {silk_table((folder / "x.exr").string(), {"--grid", "inout:1x1x1000000x1000000"}),
        {"is not allowed: its picture has 1000000000000 x 1 pixels"}},
   });
   CHECK(folder.entry_count() == 0);
@@ -153,7 +152,8 @@ TEST_CASE("a bad value of an option is told with the option and what is allowed"
   const auto refuse = [&](const std::string& option, const Arguments& values,
                           const std::string& allowed) {
     for (const std::string& value : values) {
-      cases.push_back({tabulate((folder / "x.exr").string(), {option, value}), {option, allowed}});
+      cases.push_back(
+          {silk_table((folder / "x.exr").string(), {option, value}), {option, allowed}});
       if (!value.empty()) cases.back().told.push_back("'" + value + "'");
     }
   };
@@ -175,10 +175,10 @@ TEST_CASE("a bad value of an option is told with the option and what is allowed"
   check_refused({
       {{"eval", kSilk, "--effects", "foo"},
        {"--effects: 'foo'", "specular, internal[:LAYERS], diffuse"}},
-      {tabulate("x.exr", {"--grid", "inout", "--grid", "inout"}), {"--grid: allowed only once"}},
-      {tabulate("x.exr", {"--effects", "specular,,diffuse"}), {"--effects: '' is not an effect"}},
-      {tabulate("x.exr", {"--dry-run=maybe"}), {"--dry-run", "maybe"}},
-      {tabulate("x.exr", {"-o", "x.exr"}), {"--output: x.exr is given twice"}},
+      {silk_table("x.exr", {"--grid", "inout", "--grid", "inout"}), {"--grid: allowed only once"}},
+      {silk_table("x.exr", {"--effects", "specular,,diffuse"}), {"--effects: '' is not an effect"}},
+      {silk_table("x.exr", {"--dry-run=maybe"}), {"--dry-run", "maybe"}},
+      {silk_table("x.exr", {"-o", "x.exr"}), {"--output: x.exr is given twice"}},
   });
   CHECK(folder.entry_count() == 0);
 }

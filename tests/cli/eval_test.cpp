@@ -4,6 +4,7 @@
 #include "formats/material_json.h"
 #include "model/reflectance.h"
 #include "tests/catch.h"
+#include "tests/support/commands.h"
 #include "tests/support/random_inputs.h"
 #include "tests/support/run_program.h"
 #include "tests/support/temporary_folder.h"
@@ -12,8 +13,6 @@ namespace clothbrdf::test {
 namespace {
 
 using nlohmann::json;
-
-const std::string kSilk = preset("silk").string();
 
 std::vector<json> answers(const Outcome& outcome) {
   INFO(outcome.err);

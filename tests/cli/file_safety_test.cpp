@@ -8,15 +8,13 @@
 
 #include "formats/format.h"
 #include "tests/catch.h"
+#include "tests/support/commands.h"
 #include "tests/support/mounted_folder.h"
 #include "tests/support/run_program.h"
 #include "tests/support/temporary_folder.h"
 
 namespace clothbrdf::test {
 namespace {
-
-const std::string kSilk = preset("silk").string();
-const std::string kOld = "what was there before";
 
 // A name of each format; a compressed file's space cannot be reserved beforehand.
 struct Target {
@@ -25,8 +23,8 @@ struct Target {
 };
 const Target kTargets[] = {{"silk.binary", {}}, {"silk.exr", {}}, {"silk.exr", {"--compress"}}};
 
-Outcome tabulate(const std::filesystem::path& file, const Arguments& options,
-                 const RunOptions& run = {}) {
+Outcome run_tabulate(const std::filesystem::path& file, const Arguments& options,
+                     const RunOptions& run = {}) {
   Arguments arguments = {"tabulate", kSilk, "-o", file.string()};
   arguments.insert(arguments.end(), options.begin(), options.end());
   return run_program(arguments, run);
@@ -40,7 +38,7 @@ void check_fails(const Folder& folder, const std::string& words, const RunOption
   for (const Target& target : kTargets) {
     const std::filesystem::path file = folder / target.name;
     if (with_old) write_file(file, kOld);
-    const Outcome outcome = tabulate(file, target.options, run);
+    const Outcome outcome = run_tabulate(file, target.options, run);
     CAPTURE(target.name, target.options);
     CHECK(not_a_refusal(outcome, 1) == "");
     CHECK_THAT(outcome.err, ContainsSubstring(file.string() + ": cannot write: " + words));
@@ -88,7 +86,7 @@ TEST_CASE("an output that is a directory or no regular file stays as it is") {
   const TemporaryFolder folder;
   const std::filesystem::path file = folder / "silk.exr";
   std::filesystem::create_directory(file);
-  Outcome outcome = tabulate(file, {});
+  Outcome outcome = run_tabulate(file, {});
   CHECK(not_a_refusal(outcome, 1) == "");
   CHECK_THAT(outcome.err, ContainsSubstring(file.string() + ": cannot write: Is a directory"));
   CHECK(std::filesystem::is_directory(file));
@@ -98,7 +96,7 @@ TEST_CASE("an output that is a directory or no regular file stays as it is") {
       folder / "pipe";  // never a device: as root, a wrong program would replace it
   REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
   std::filesystem::create_symlink(pipe, file);
-  outcome = tabulate(file, {});
+  outcome = run_tabulate(file, {});
   CHECK(not_a_refusal(outcome, 1) == "");
   CHECK_THAT(outcome.err, ContainsSubstring("not a regular file"));
   CHECK(std::filesystem::is_symlink(file));
@@ -110,7 +108,7 @@ TEST_CASE("a table takes the place of an older one") {
   const TemporaryFolder folder;
   const std::filesystem::path file = folder / "silk.exr";
   write_file(file, kOld);
-  CHECK(tabulate(file, {"--grid", "inout"}).exit_code == 0);
+  CHECK(run_tabulate(file, {"--grid", "inout"}).exit_code == 0);
   CHECK(folder.entry_count() == 1);
   CHECK(format_for(file).read(file).spec().grid() == inout());
 }
@@ -122,7 +120,7 @@ TEST_CASE("in a read-only folder tabulate fails and the old file stays") {
   REQUIRE(folder.make_read_only());
   for (const Target& target : kTargets) {
     const std::filesystem::path file = folder / target.name;
-    const Outcome outcome = tabulate(file, target.options);
+    const Outcome outcome = run_tabulate(file, target.options);
     CHECK(not_a_refusal(outcome, 1) == "");
     CHECK_THAT(outcome.err,
                ContainsSubstring(file.string() + ": cannot write: Read-only file system"));
@@ -136,7 +134,7 @@ TEST_CASE("on a full disk tabulate fails and leaves only what was there") {
   if (!mounted(folder)) return;
   for (const bool with_old : {true, false})
     check_fails(folder, "No space left on device", {}, with_old);
-  CHECK(tabulate(folder / "silk.exr", {"--grid", "inout"}).exit_code == 0);
+  CHECK(run_tabulate(folder / "silk.exr", {"--grid", "inout"}).exit_code == 0);
 }
 
 TEST_CASE("beyond the limit on file sizes tabulate fails and leaves only what was there") {
@@ -176,11 +174,11 @@ TEST_CASE("killed while it writes, tabulate leaves only what was there") {
 TEST_CASE("without a standard output tabulate still writes whole tables or none") {
   const TemporaryFolder folder;
   const Arguments options = {"--grid", "inout"};
-  REQUIRE(tabulate(folder / "expected.exr", options).exit_code == 0);
+  REQUIRE(run_tabulate(folder / "expected.exr", options).exit_code == 0);
   const std::string expected = read_file(folder / "expected.exr");
 
   const std::filesystem::path closed = folder / "closed.exr";
-  const Outcome outcome = tabulate(closed, options, {.output_closed = true});
+  const Outcome outcome = run_tabulate(closed, options, {.output_closed = true});
   CHECK(not_a_refusal(outcome, 1) == "");
   CHECK_THAT(outcome.err, ContainsSubstring("standard output"));
   if (std::filesystem::exists(closed)) CHECK(read_file(closed) == expected);

@@ -13,8 +13,6 @@ namespace {
 
 using nlohmann::json;
 
-const std::string kSilk = preset("silk").string();
-
 // Small enough for a second's work.
 Arguments identify(const std::string& file, const Arguments& more) {
   Arguments all = {"identify", file, "--layers", "3:5", "--tie", "weft"};

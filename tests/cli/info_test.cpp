@@ -20,7 +20,7 @@ std::string info(const Arguments& arguments) {
 
 json info_json(const std::string& file) { return json::parse(info({"--json", file})); }
 
-void tabulate(const Arguments& arguments) {
+void made_table(const Arguments& arguments) {
   Arguments all = {"tabulate"};
   all.insert(all.end(), arguments.begin(), arguments.end());
   REQUIRE(run_program(all).exit_code == 0);
@@ -47,8 +47,8 @@ TEST_CASE("info says of the paper's convention what it is not") {
 TEST_CASE("info tells of an EXR table its axes, channels, cells and material") {
   const TemporaryFolder folder;
   const std::string file = (folder / "table.exr").string();
-  tabulate({preset("silk").string(), "--grid", "halfdiff4d:6x4x5x10", "--effects",
-            "internal,diffuse", "-o", file});
+  made_table({preset("silk").string(), "--grid", "halfdiff4d:6x4x5x10", "--effects",
+              "internal,diffuse", "-o", file});
   const json told = info_json(file);
   CHECK(told["file"] == file);
   CHECK(told["format"] == "EXR");
@@ -90,7 +90,7 @@ TEST_CASE("info tells of an EXR table its axes, channels, cells and material") {
 TEST_CASE("info tells of a MERL table what the file can hold") {
   const TemporaryFolder folder;
   const std::string file = (folder / "table.binary").string();
-  tabulate({preset("silk").string(), "-o", file});
+  made_table({preset("silk").string(), "-o", file});
   const json told = info_json(file);
   CHECK(told["format"] == "MERL");
   CHECK(told["grid"] == "halfdiff3d:90x90x180");

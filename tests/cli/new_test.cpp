@@ -29,8 +29,8 @@ std::string said(const std::string& file, const std::string& of_material) {
 }
 
 // That `new` refuses, says this, and leaves the folder empty.
-void check_refused(const TemporaryFolder& folder, const Arguments& arguments,
-                   const std::vector<std::string>& told, int exit_code = 2) {
+void check_new_refused(const TemporaryFolder& folder, const Arguments& arguments,
+                       const std::vector<std::string>& told, int exit_code = 2) {
   Arguments all = {"new"};
   all.insert(all.end(), arguments.begin(), arguments.end());
   CAPTURE(all);
@@ -134,33 +134,33 @@ TEST_CASE("new writes nothing where the command line is wrong, and says what to 
   const TemporaryFolder folder;
   const std::string file = (folder / "x.json").string();
   const std::string known = "known: cotton, cotton_paper, denim, linen, nylon, satin, silk,";
-  check_refused(folder, {"silc", "-o", file}, {"'silc' is not a preset", known});
-  check_refused(folder, {"", "-o", file}, {"'' is not a preset", known});
-  check_refused(folder, {"si\nlk", "-o", file}, {"'si?lk' is not a preset"});
-  check_refused(folder, {"-o", file}, {"PRESET is required", known});
-  check_refused(folder, {"--colour", "#123"}, {"PRESET is required", known});
-  check_refused(folder, {"silk"}, {"--output is required", ".json"});
-  check_refused(folder, {"silk", "-o"}, {"--output: a value is required"});
-  check_refused(folder, {"silk", "linen", "-o", file}, {"'linen' is one argument too many"});
-  check_refused(folder, {"silk", "-o", file, "-o", file}, {"--output: allowed only once"});
+  check_new_refused(folder, {"silc", "-o", file}, {"'silc' is not a preset", known});
+  check_new_refused(folder, {"", "-o", file}, {"'' is not a preset", known});
+  check_new_refused(folder, {"si\nlk", "-o", file}, {"'si?lk' is not a preset"});
+  check_new_refused(folder, {"-o", file}, {"PRESET is required", known});
+  check_new_refused(folder, {"--colour", "#123"}, {"PRESET is required", known});
+  check_new_refused(folder, {"silk"}, {"--output is required", ".json"});
+  check_new_refused(folder, {"silk", "-o"}, {"--output: a value is required"});
+  check_new_refused(folder, {"silk", "linen", "-o", file}, {"'linen' is one argument too many"});
+  check_new_refused(folder, {"silk", "-o", file, "-o", file}, {"--output: allowed only once"});
   for (const std::string option : {"--colour", "--warp-colour", "--weft-colour"}) {
     for (const std::string value : {"", "red", "#12345", "#1234567", "#12345g", "#-1-1-1"}) {
       std::string told = option;
       told += ": '" + value + "' is not allowed: three or six hexadecimal digits";
-      check_refused(folder, {"silk", option, value, "-o", file}, {told, "#b03060"});
+      check_new_refused(folder, {"silk", option, value, "-o", file}, {told, "#b03060"});
     }
   }
   for (const char* name : {"x.exr", "x", ".json", "x.json.bak", "x.JSON"}) {
     const std::string wrong = (folder / name).string();
-    check_refused(folder, {"silk", "-o", wrong}, {wrong + ": the ending '", "allowed: .json"});
+    check_new_refused(folder, {"silk", "-o", wrong}, {wrong + ": the ending '", "allowed: .json"});
   }
-  check_refused(folder, {"silk", "-o", ""}, {"the ending '' is not that of a material"});
+  check_new_refused(folder, {"silk", "-o", ""}, {"the ending '' is not that of a material"});
 }
 
 TEST_CASE("a material that cannot be written is failed work, and leaves nothing") {
   const TemporaryFolder folder;
   const std::string missing = (folder / "missing" / "x.json").string();
-  check_refused(folder, {"silk", "-o", missing}, {missing + ": cannot write: No such file"}, 1);
+  check_new_refused(folder, {"silk", "-o", missing}, {missing + ": cannot write: No such file"}, 1);
 }
 
 TEST_CASE("a new material takes the place of an older file") {

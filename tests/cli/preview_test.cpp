@@ -8,6 +8,7 @@
 #include "preview/panels.h"
 #include "preview/sheet.h"
 #include "tests/catch.h"
+#include "tests/support/commands.h"
 #include "tests/support/make_table.h"
 #include "tests/support/read_picture.h"
 #include "tests/support/run_program.h"
@@ -17,18 +18,8 @@ namespace {
 
 using nlohmann::json;
 
-const std::string kSilk = preset("silk").string();
 const std::string kCotton = preset("cotton").string();
 constexpr int kSize = 16;
-
-// Standard output of a run that went well.
-std::string output_of(const Arguments& arguments) {
-  const Outcome outcome = run_program(arguments);
-  CAPTURE(arguments);
-  CHECK(outcome.err == "");
-  REQUIRE(outcome.exit_code == 0);
-  return outcome.out;
-}
 
 Arguments preview(const Arguments& files, const std::string& output, const Arguments& options) {
   Arguments arguments = {"preview"};

@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "tests/catch.h"
+#include "tests/support/commands.h"
 #include "tests/support/pseudo_terminal.h"
 #include "tests/support/run_program.h"
 #include "tests/support/temporary_folder.h"
@@ -14,8 +15,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-const std::string kSilk = preset("silk").string();
-const std::string kOld = "what was there before";
 const std::string kErase = "\r\x1b[K";
 
 // Some seconds of work in many cells, and in a single one.
@@ -26,7 +25,7 @@ const Arguments kSlowCell = {"--grid", "inout:1x1x1x1", "--cells", "average:1e-6
 constexpr std::chrono::seconds kPromptly{20};
 constexpr std::chrono::minutes kPatience{4};
 
-Arguments tabulate(const std::filesystem::path& file, const Arguments& options) {
+Arguments tabulate_silk(const std::filesystem::path& file, const Arguments& options) {
   Arguments arguments = {"tabulate", kSilk, "-o", file.string()};
   arguments.insert(arguments.end(), options.begin(), options.end());
   return arguments;
@@ -86,7 +85,8 @@ std::string last_line(const std::string& text) {
 TEST_CASE("on a terminal a long run tells per cent, rate and time left, and takes the line away") {
   const TemporaryFolder folder;
   PseudoTerminal terminal;
-  RunningProgram program(tabulate(folder / "silk.exr", kManyCells), {.terminal = terminal.end()});
+  RunningProgram program(tabulate_silk(folder / "silk.exr", kManyCells),
+                         {.terminal = terminal.end()});
   REQUIRE(stretch(program));
   REQUIRE(comes_true([&] {
     terminal.text();  // a full screen would hold it up
@@ -112,7 +112,7 @@ TEST_CASE("on a terminal a short run draws nothing") {
   REQUIRE(comes_true([&] {
     PseudoTerminal terminal;
     const auto start = Clock::now();
-    RunningProgram program(tabulate(folder / "silk.exr", {"--grid", "inout:1x1x1x1"}),
+    RunningProgram program(tabulate_silk(folder / "silk.exr", {"--grid", "inout:1x1x1x1"}),
                            {.terminal = terminal.end()});
     CHECK(program.wait().exit_code == 0);
     if (Clock::now() - start > kShort) return false;
@@ -123,7 +123,7 @@ TEST_CASE("on a terminal a short run draws nothing") {
 
 TEST_CASE("where standard error is no terminal a long run draws nothing") {
   const TemporaryFolder folder;
-  RunningProgram program(tabulate(folder / "silk.exr", kManyCells));
+  RunningProgram program(tabulate_silk(folder / "silk.exr", kManyCells));
   REQUIRE(stretch(program));
   const Outcome outcome = program.wait();
   CHECK(outcome.exit_code == 0);
@@ -136,7 +136,7 @@ TEST_CASE("a signal ends tabulate promptly, by that signal, and leaves only what
       const TemporaryFolder folder;
       const std::filesystem::path file = folder / "silk.exr";
       if (with_old) write_file(file, kOld);
-      RunningProgram program(tabulate(file, kSlowCell));
+      RunningProgram program(tabulate_silk(file, kSlowCell));
       REQUIRE(comes_true([&] { return handles(program, signal) && has_worked(program); }));
       program.send(signal);
       CHECK(comes_true([&] { return !program.runs(); }, kPromptly));
@@ -173,7 +173,8 @@ TEST_CASE("files finished before the signal stay and are reported, and the other
 TEST_CASE("on a terminal the line is gone before the program says that it was stopped") {
   const TemporaryFolder folder;
   PseudoTerminal terminal;
-  RunningProgram program(tabulate(folder / "silk.exr", kSlowCell), {.terminal = terminal.end()});
+  RunningProgram program(tabulate_silk(folder / "silk.exr", kSlowCell),
+                         {.terminal = terminal.end()});
   REQUIRE(comes_true([&] { return terminal.text().find("0 of 1 cells") != std::string::npos; }));
   program.send(SIGINT);
   CHECK(program.wait().signal == SIGINT);
@@ -187,7 +188,7 @@ TEST_CASE("a second signal ends tabulate at once, whichever it is") {
     const std::filesystem::path file = folder / "silk.exr";
     write_file(file, kOld);
     PseudoTerminal terminal;
-    RunningProgram program(tabulate(file, kSlowCell), {.terminal = terminal.end()});
+    RunningProgram program(tabulate_silk(file, kSlowCell), {.terminal = terminal.end()});
     REQUIRE(comes_true([&] { return !terminal.text().empty(); }));
     // On a screen that stands still the program hangs while it draws, and could never end cleanly.
     terminal.hold();
@@ -205,7 +206,8 @@ TEST_CASE("a second signal ends tabulate at once, whichever it is") {
 
 TEST_CASE("a signal that was ignored stays ignored") {
   const TemporaryFolder folder;
-  RunningProgram program(tabulate(folder / "silk.exr", kManyCells), {.ignored_signal = SIGINT});
+  RunningProgram program(tabulate_silk(folder / "silk.exr", kManyCells),
+                         {.ignored_signal = SIGINT});
   REQUIRE(comes_true([&] { return handles(program, SIGTERM); }));
   CHECK_FALSE(handles(program, SIGINT));
   program.send(SIGINT);

@@ -5,6 +5,8 @@
 #include "formats/format.h"
 #include "formats/material_json.h"
 #include "tests/catch.h"
+#include "tests/support/commands.h"
+#include "tests/support/make_table.h"
 #include "tests/support/run_program.h"
 #include "tests/support/temporary_folder.h"
 
@@ -13,17 +15,6 @@ namespace {
 
 using nlohmann::json;
 
-const std::string kSilk = preset("silk").string();
-
-// Standard output of a run that went well.
-std::string output_of(const Arguments& arguments, const std::string& input = "") {
-  const Outcome outcome = run_program(arguments, {.input = input});
-  CAPTURE(arguments);
-  CHECK(outcome.err == "");
-  REQUIRE(outcome.exit_code == 0);
-  return outcome.out;
-}
-
 std::vector<json> json_lines(const std::string& text) {
   std::vector<json> objects;
   std::istringstream lines(text);
@@ -31,15 +22,13 @@ std::vector<json> json_lines(const std::string& text) {
   return objects;
 }
 
-Table table_of(const std::filesystem::path& file) { return format_for(file).read(file); }
-
 // The table that tabulate writes of silk with these options.
 Table tabulated(const Arguments& options) {
   const TemporaryFolder folder;
   Arguments arguments = {"tabulate", kSilk, "-o", (folder / "silk.exr").string()};
   arguments.insert(arguments.end(), options.begin(), options.end());
   output_of(arguments);
-  return table_of(folder / "silk.exr");
+  return read_table(folder / "silk.exr");
 }
 
 // Totals of eval, one array a pair.
@@ -70,8 +59,8 @@ TEST_CASE("tabulate writes each table that is asked for and says so") {
   const std::string said = output_of({"tabulate", kSilk, "-o", binary, "-o", exr});
   CHECK(folder.entry_count() == 2);
   CHECK(std::filesystem::file_size(binary) == 34'992'012);
-  CHECK(table_of(binary).spec().grid() == halfdiff3d());
-  CHECK(table_of(exr).spec().grid() == halfdiff4d());
+  CHECK(read_table(binary).spec().grid() == halfdiff3d());
+  CHECK(read_table(exr).spec().grid() == halfdiff4d());
   CHECK_THAT(said, ContainsSubstring(binary + ": MERL halfdiff3d:90x90x180, 1,458,000 cells of 3 "
                                               "channels, 34,992,012 bytes in "));
   CHECK_THAT(said, ContainsSubstring("(isotropic: the mean over phi_h)\n"));
@@ -135,7 +124,7 @@ TEST_CASE("tabulate --tolerance meets it, and says so in the file") {
   CHECK(told["error"]["rms"] > 0.015);
   CHECK(told["error"]["reader"] == "linear");
   CHECK(told["error"]["against"] == "cloth");
-  const Table table = table_of(exr);
+  const Table table = read_table(exr);
   REQUIRE(table.spec().provenance.error);
   CHECK(table.spec().provenance.error->error.rms == told["error"]["rms"].get<double>());
   CHECK(table.precision().relative == 0x1p-11);
@@ -143,7 +132,7 @@ TEST_CASE("tabulate --tolerance meets it, and says so in the file") {
   CHECK(folder.entry_count() == 1);
   const std::string other = (folder / "other.exr").string();
   output_of({"convert", exr, other, "--grid", "halfdiff4d:9x8x9x8"});
-  CHECK(!table_of(other).spec().provenance.error);
+  CHECK(!read_table(other).spec().provenance.error);
 
   const json p99 = json_lines(output_of({"tabulate", kSilk, "--tolerance", "0.05", "--metric",
                                          "p99", "--json", "-o", exr}))
@@ -180,7 +169,7 @@ TEST_CASE("formats with a size get the bytes that a tolerance needs") {
   CHECK(rough["error"]["rms"] <= 0.1);
   CHECK(fine["error"]["rms"] <= 0.03);
   CHECK(rough["bytes"].get<double>() < 0.5 * fine["bytes"].get<double>());
-  CHECK(table_of(bsdf).spec().provenance.error);
+  CHECK(read_table(bsdf).spec().provenance.error);
 }
 
 TEST_CASE("where half floats end before the values do, a tolerance is met with floats") {
@@ -200,7 +189,7 @@ TEST_CASE("where half floats end before the values do, a tolerance is met with f
                                           "--tolerance", "0.1", "--json", "-o", exr}))
                         .at(0);
   CHECK(told["error"]["rms"] <= 0.1);
-  CHECK(table_of(exr).precision().bytes == 4);
+  CHECK(read_table(exr).precision().bytes == 4);
 }
 
 TEST_CASE("grids of free sizes get the cells that a tolerance needs") {
@@ -289,8 +278,8 @@ TEST_CASE("option --compress loses nothing, --half half of the bytes") {
   const std::uintmax_t bytes = write("plain.exr", {});
   CHECK(write("compressed.exr", {"--compress"}) < bytes);
   CHECK(write("half.exr", {"--half"}) < bytes * 51 / 100);
-  const Table plain = table_of(folder / "plain.exr");
-  const Table compressed = table_of(folder / "compressed.exr");
+  const Table plain = read_table(folder / "plain.exr");
+  const Table compressed = read_table(folder / "compressed.exr");
   CHECK(std::equal(plain.values().begin(), plain.values().end(), compressed.values().begin(),
                    compressed.values().end()));
 }
@@ -309,7 +298,7 @@ TEST_CASE("eval and an EXR table hold the same values at the nodes") {
   const TemporaryFolder folder;
   const std::string name = (folder / "table.exr").string();
   output_of({"tabulate", material, "--grid", "inout", "-o", name});
-  const Table table = table_of(name);
+  const Table table = read_table(name);
   const Grid& grid = table.spec().grid();
   std::string pairs;
   std::vector<std::size_t> cells;
@@ -335,7 +324,7 @@ TEST_CASE("a MERL table holds the mean of eval over phi_h at the cells' centres"
   const TemporaryFolder folder;
   const std::string name = (folder / "table.binary").string();
   output_of({"tabulate", material, "-o", name});
-  const Table table = table_of(name);
+  const Table table = read_table(name);
   const Grid& grid = table.spec().grid();
   // The lobes of cotton are so smooth in azimuth that equal weights of so many give all digits.
   constexpr int kTurns = 180;

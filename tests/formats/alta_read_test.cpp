@@ -4,7 +4,6 @@
 #include <cstring>
 #include <functional>
 #include <iostream>
-#include <numbers>
 #include <sstream>
 
 #include "formats/alta_parametrisation.h"
@@ -17,11 +16,8 @@
 namespace clothbrdf::test {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 using Vector = Vector3<double>;
 using Numbers = std::vector<double>;
-
-Table read_table(const std::filesystem::path& path) { return format_for(path).read(path); }
 
 Vector sum(const Vector& a, const Vector& b, double sign = 1) {
   return {a[0] + sign * b[0], a[1] + sign * b[1], a[2] + sign * b[2]};

@@ -5,7 +5,6 @@
 #include <iostream>
 #include <limits>
 #include <map>
-#include <numbers>
 #include <sstream>
 
 #include "model/reflectance.h"
@@ -18,10 +17,6 @@
 
 namespace clothbrdf::test {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
-
-Table read_table(const std::filesystem::path& path) { return format_for(path).read(path); }
 
 // A strict reader that goes as ALTA's own does: header lines as long as the next byte is a '#', or
 // up to '#ALTA END HEADER'; then numbers by >>, or as they are.

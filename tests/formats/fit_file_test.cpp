@@ -17,20 +17,20 @@ namespace {
 using nlohmann::json;
 using Kind = ParameterWish::Kind;
 
-constexpr const char* kName = "fit.json";
+constexpr const char* kFitName = "fit.json";
 
-FitOptions parsed(const std::string& text) { return parse_fit_file(text, kName, {}); }
+FitOptions parsed(const std::string& text) { return parse_fit_file(text, kFitName, {}); }
 
 // The message that the text is refused with, without the file's name.
-std::string refusal(const std::string& text) {
+std::string fit_refusal(const std::string& text) {
   try {
     parsed(text);
   } catch (const InputError& error) {
     const std::string message = error.what();
     CAPTURE(message);
     CHECK(message.find_first_of("\r\n") == std::string::npos);
-    CHECK(message.starts_with(std::string(kName) + ": "));
-    return message.substr(std::string(kName).size() + 2);
+    CHECK(message.starts_with(std::string(kFitName) + ": "));
+    return message.substr(std::string(kFitName).size() + 2);
   }
   return "";
 }
@@ -125,36 +125,38 @@ TEST_CASE("the start of a fit file is a material in it, or a path from its folde
   write_file(folder / "fit.json", R"({"start": "starts/silk.json"})");
   CHECK(read_fit_file(folder / "fit.json").start == silk);
 
-  CHECK_THAT(refusal(R"({"start": {"warp": {}}})"), ContainsSubstring("/start: /weights: missing"));
+  CHECK_THAT(fit_refusal(R"({"start": {"warp": {}}})"),
+             ContainsSubstring("/start: /weights: missing"));
   CHECK_THROWS_AS(parsed(R"({"start": "no such file.json"})"), InputError);
 }
 
 TEST_CASE("a fit file is refused in one line with pointer, value and what is allowed") {
-  CHECK(refusal("{]").starts_with("line 1, column 2"));
-  CHECK(refusal("[]") == "[] is not allowed: an object");
-  CHECK_THAT(refusal(R"({"layer": [0, 8]})"),
+  CHECK(fit_refusal("{]").starts_with("line 1, column 2"));
+  CHECK(fit_refusal("[]") == "[] is not allowed: an object");
+  CHECK_THAT(fit_refusal(R"({"layer": [0, 8]})"),
              ContainsSubstring("/layer: unknown key (did you mean \"layers\"?)"));
-  CHECK(refusal(R"({"layers": [0, 8], "layers": [0, 7]})") ==
+  CHECK(fit_refusal(R"({"layers": [0, 8], "layers": [0, 7]})") ==
         "/layers: this key is there twice; once is allowed");
-  CHECK(refusal(R"({"layers": [0]})") == "/layers: [0] is not allowed: an array of 2 integers");
-  CHECK(refusal(R"({"layers": [0, 65]})") ==
+  CHECK(fit_refusal(R"({"layers": [0]})") == "/layers: [0] is not allowed: an array of 2 integers");
+  CHECK(fit_refusal(R"({"layers": [0, 65]})") ==
         "/layers/1: 65 is not allowed: an integer from 0 to 64");
-  CHECK(refusal(R"({"layers": [8, 0]})") ==
+  CHECK(fit_refusal(R"({"layers": [8, 0]})") ==
         "/layers: [8,0] is not allowed: the fewest, then the most");
-  CHECK(refusal(R"({"paths": "none"})") ==
+  CHECK(fit_refusal(R"({"paths": "none"})") ==
         "/paths: \"none\" is not allowed: \"all\" or \"single\" or \"both\"");
-  CHECK(refusal(R"({"noise": 0})") ==
+  CHECK(fit_refusal(R"({"noise": 0})") ==
         "/noise: 0 is not allowed: a number from 1e-12 to 1000000000000");
-  CHECK(refusal(R"({"loss": 2})") ==
+  CHECK(fit_refusal(R"({"loss": 2})") ==
         "/loss: 2 is not allowed: \"squared\" or \"huber\" or \"cauchy\"");
-  CHECK(refusal(R"({"starts": 1.5})") == "/starts: 1.5 is not allowed: an integer from 1 to 10000");
-  CHECK_THAT(refusal(R"({"seed": 9007199254740993})"), ContainsSubstring("/seed: "));
-  CHECK(refusal(R"({"start": 3})") == "/start: 3 is not allowed: a string or an object");
+  CHECK(fit_refusal(R"({"starts": 1.5})") ==
+        "/starts: 1.5 is not allowed: an integer from 1 to 10000");
+  CHECK_THAT(fit_refusal(R"({"seed": 9007199254740993})"), ContainsSubstring("/seed: "));
+  CHECK(fit_refusal(R"({"start": 3})") == "/start: 3 is not allowed: a string or an object");
 }
 
 TEST_CASE("a wish that makes no sense is refused") {
   const auto of = [](const std::string& wish) {
-    return refusal(R"({"parameters": {"warp.scatter": )" + wish + "}}");
+    return fit_refusal(R"({"parameters": {"warp.scatter": )" + wish + "}}");
   };
   const std::string at = "/parameters/warp.scatter";
   const std::string allowed =

@@ -19,8 +19,6 @@
 namespace clothbrdf::test {
 namespace {
 
-Table read_table(const std::filesystem::path& path) { return format_for(path).read(path); }
-
 // A strict reader of the published layout: one block of reflection and nothing after it.
 struct Mbsdf {
   std::string keys;

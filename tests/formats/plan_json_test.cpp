@@ -74,7 +74,7 @@ void check_same(const MaterialPlan& a, const MaterialPlan& b) {
 }
 
 // What the file of two_cloths is refused with once a value, at a pointer, is another one.
-std::string refusal(const std::string& pointer, const json& value) {
+std::string plan_refusal(const std::string& pointer, const json& value) {
   json file = json::parse(plan_to_json(two_cloths()));
   file[json::json_pointer(pointer)] = value;
   try {
@@ -130,7 +130,7 @@ TEST_CASE("a plan file of one cloth says of all cloths what it says of that one"
 
 TEST_CASE("a plan file is refused in one line with pointer, value and what is allowed") {
   const auto starts = [](const std::string& pointer, const json& value, const std::string& start) {
-    const std::string message = refusal(pointer, value);
+    const std::string message = plan_refusal(pointer, value);
     CAPTURE(message, start);
     CHECK(message.starts_with("plan.json: " + start));
   };

@@ -9,11 +9,7 @@
 #include "tests/formats/table_errors.h"
 
 namespace clothbrdf::test {
-namespace {
-
-Table read_back(const std::filesystem::path& path) { return format_for(path).read(path); }
-
-}  // namespace
+namespace {}  // namespace
 
 TEST_CASE("an RGL file follows the cloth within the promised errors for its size") {
   const TemporaryFolder folder;
@@ -25,7 +21,7 @@ TEST_CASE("an RGL file follows the cloth within the promised errors for its size
     const auto written = std::filesystem::file_size(folder / "t.bsdf");
     CHECK(written <= bytes);
     CHECK(written > bytes / 100 * 95);
-    const Errors e = errors_of(read_back(folder / "t.bsdf"), *exact);
+    const Errors e = errors_of(read_table(folder / "t.bsdf"), *exact);
     std::cout << name << ".bsdf, " << written << " bytes: median " << e.median << ", 95 % " << e.p95
               << ", 99 % " << e.p99 << " per cent below 80 degrees; written in " << seconds.count()
               << " s\n";
@@ -45,7 +41,7 @@ TEST_CASE("a reader written from the format's description finds the same f_r in 
   RandomInputs random(seed);
   const auto exact = pairs_of(random.material(MaterialRanges{}));
   write_table(*exact, folder / "t.bsdf", {.bytes = 300000});
-  const Table table = read_back(folder / "t.bsdf");
+  const Table table = read_table(folder / "t.bsdf");
   const StrictRgl strict(read_file(folder / "t.bsdf"));
   double worst = 0;
   double mean = 0;
@@ -67,7 +63,7 @@ TEST_CASE("the table direction of an RGL file is to the eye, where that makes a 
   const TemporaryFolder folder;
   const auto exact = pairs_of(read_material(preset("silk_paper")));
   write_table(*exact, folder / "t.bsdf", {.bytes = 3000000});
-  const Errors e = errors_of(read_back(folder / "t.bsdf"), *exact, 60);
+  const Errors e = errors_of(read_table(folder / "t.bsdf"), *exact, 60);
   std::cout << "silk_paper.bsdf of 3 MB: median " << e.median << ", 95 % " << e.p95
             << " per cent below 60 degrees\n";
   CHECK(e.median <= 1);
@@ -81,7 +77,7 @@ TEST_CASE("an isotropic RGL file holds the mean over rotations, the same in a mi
   CHECK(std::filesystem::file_size(folder / "t.bsdf") <= 1000000);
   const auto fields = strict_fields(read_file(folder / "t.bsdf"));
   CHECK(fields.at("phi_i").shape == std::vector<std::uint64_t>{1});
-  const Table table = read_back(folder / "t.bsdf");
+  const Table table = read_table(folder / "t.bsdf");
   const Errors e = errors_of(table, *exact);
   std::cout << "isotropic silk.bsdf of 1 MB: median " << e.median << ", 95 % " << e.p95 << ", 99 % "
             << e.p99 << " per cent\n";

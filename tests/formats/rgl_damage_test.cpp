@@ -6,11 +6,7 @@
 #include "tests/formats/small_rgl.h"
 
 namespace clothbrdf::test {
-namespace {
-
-constexpr double kPi = 3.14159265358979323846;
-
-}  // namespace
+namespace {}  // namespace
 
 TEST_CASE("every truncation of an RGL file is refused") {
   const TemporaryFolder folder;

@@ -12,8 +12,6 @@
 namespace clothbrdf::test {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
 std::vector<double> f_at(const Table& table, const Directions& pair) {
   std::vector<double> f(table.spec().channels.size());
   REQUIRE(table.interpolate(pair, f));

@@ -10,8 +10,6 @@
 namespace clothbrdf::test {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
 struct Sampling {
   double lost = 0;            // samples below the horizon
   double albedo = 0;          // by samples
@@ -35,8 +33,8 @@ Sampling sample_file(const StrictRgl& file, const Table& table, const Vector3<do
     const double a = (k % kSide + 0.5) / kSide;
     const int row = k / kSide;
     const double b = (row + 0.5) / kSide;
-    const SquarePoint u = luminance.sample({a, b}, blend);
-    const SquarePoint u_m = half_vectors.sample(u, blend);
+    const RglPoint u = luminance.sample({a, b}, blend);
+    const RglPoint u_m = half_vectors.sample(u, blend);
     const double theta = square_theta(u_m.x);
     const Vector3<double> m = direction_at(theta, square_phi(u_m.y));
     const double cosine = eye[0] * m[0] + eye[1] * m[1] + eye[2] * m[2];

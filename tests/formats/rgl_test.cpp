@@ -11,8 +11,6 @@
 namespace clothbrdf::test {
 namespace {
 
-Table read_back(const std::filesystem::path& path) { return format_for(path).read(path); }
-
 Material spectral_material(std::vector<double> wavelengths_nm) {
   Material material = read_material(preset("silk"));
   material.wavelengths_nm = std::move(wavelengths_nm);
@@ -93,7 +91,7 @@ TEST_CASE("an RGL file says what it was made of, and its nodes hold what its rul
     const Material material = random.material(MaterialRanges{});
     const auto exact = pairs_of(material, isotropic);
     write_table(*exact, folder / "t.bsdf", {.bytes = 200000});
-    const Table table = read_back(folder / "t.bsdf");
+    const Table table = read_table(folder / "t.bsdf");
     CHECK(table.spec().provenance == exact->spec().provenance);
     CHECK(table.spec().channels == exact->spec().channels);
     CHECK(table.spec().isotropic() == isotropic);
@@ -129,7 +127,7 @@ TEST_CASE("a spectral RGL file holds the wavelengths of its table") {
   CHECK(!fields.contains("rgb"));
   CHECK(floats_of(fields.at("wavelengths")) ==
         std::vector<float>{400, 416.6666667F, 500, 600.5, 700});
-  const Table table = read_back(folder / "t.bsdf");
+  const Table table = read_table(folder / "t.bsdf");
   CHECK(table.spec().channels == exact->spec().channels);
   const Errors e = errors_of(table, *exact);
   CHECK(e.median <= 0.6);
@@ -171,7 +169,7 @@ TEST_CASE("an RGL file is never larger than asked, and a size too small is refus
     CHECK(written <= bytes);
     CHECK(written >= before);
     before = written;
-    CHECK_NOTHROW(read_back(folder / "t.bsdf"));
+    CHECK_NOTHROW(read_table(folder / "t.bsdf"));
   }
 }
 
@@ -221,7 +219,7 @@ TEST_CASE("a black or a broken table makes a file that can be read") {
       CHECK(std::all_of(values.begin(), values.end(),
                         [](float v) { return v > 0 && std::isfinite(v); }));
     }
-    const Table table = read_back(folder / "t.bsdf");
+    const Table table = read_table(folder / "t.bsdf");
     std::vector<double> f(3);
     // What is no number is no answer.
     CHECK(table.interpolate({{0.6, 0, 0.8}, {0, 0.6, 0.8}}, f) == std::isfinite(value));

@@ -9,11 +9,11 @@ namespace clothbrdf::test {
 using nlohmann::json;
 
 namespace {
-const std::string kNone;
+const std::string kNoViolation;
 }
 
 TEST_CASE("a value that follows the schema has no violation") {
-  CHECK(find_violation(R"({"type": "number", "minimum": 0})"_json, 1.5) == kNone);
+  CHECK(find_violation(R"({"type": "number", "minimum": 0})"_json, 1.5) == kNoViolation);
 }
 
 TEST_CASE("what is allowed is told for every kind of bound") {
@@ -48,7 +48,7 @@ TEST_CASE("of alternatives the one of the value's type is meant") {
     },
     "type": "object",
     "additionalProperties": {"$ref": "#/definitions/span"}})"_json;
-  CHECK(find_violation(schema, R"({"a": 90, "b": [0, 90]})"_json) == kNone);
+  CHECK(find_violation(schema, R"({"a": 90, "b": [0, 90]})"_json) == kNoViolation);
   CHECK(find_violation(schema, R"({"a": 91})"_json) ==
         "/a: 91 is not allowed: a number from 0 to 90");
   CHECK(find_violation(schema, R"({"a": [0, 91]})"_json) ==
@@ -62,7 +62,7 @@ TEST_CASE("of alternatives the one of the value's type is meant") {
 TEST_CASE("of parts that all hold the one that fails is told") {
   const json schema = R"({"allOf": [{"type": "object"}, {"type": "object", "required": ["x"],
     "properties": {"x": {"type": "integer", "minimum": 1, "maximum": 2}}}]})"_json;
-  CHECK(find_violation(schema, R"({"x": 1, "y": 0})"_json) == kNone);
+  CHECK(find_violation(schema, R"({"x": 1, "y": 0})"_json) == kNoViolation);
   CHECK(find_violation(schema, R"({})"_json) == "/x: missing, needed is an integer from 1 to 2");
   CHECK(find_violation(schema, R"({"x": 3})"_json) ==
         "/x: 3 is not allowed: an integer from 1 to 2");
@@ -72,7 +72,7 @@ TEST_CASE("each place of a tuple has its own schema") {
   const json schema =
       R"({"type": "array",
           "items": [{"type": "number"}, {"type": "string"}, {"type": "null"}]})"_json;
-  CHECK(find_violation(schema, R"([1, "a", null, 5])"_json) == kNone);
+  CHECK(find_violation(schema, R"([1, "a", null, 5])"_json) == kNoViolation);
   CHECK(find_violation(schema, R"([1, 2])"_json) == "/1: 2 is not allowed: a string");
   CHECK(find_violation(schema, R"([1, "a", 3])"_json) == "/2: 3 is not allowed: null");
 }

@@ -10,8 +10,6 @@
 
 namespace clothbrdf::test {
 
-inline constexpr double kPi = 3.14159265358979323846;
-
 /// f_r of a material at any pairs.
 inline std::unique_ptr<Producer> pairs_of(const Material& material, bool isotropic = false) {
   return make_producer(material_spec(material, {}, AnyPairs{isotropic}), 2);

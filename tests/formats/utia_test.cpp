@@ -20,16 +20,14 @@
 namespace clothbrdf::test {
 namespace {
 
-constexpr std::size_t kBytes = 1990656;
-
-Table read_table(const std::filesystem::path& path) { return format_for(path).read(path); }
+constexpr std::size_t kUtiaBytes = 1990656;
 
 std::size_t place(std::size_t plane, std::size_t ti, std::size_t pi, std::size_t tv,
                   std::size_t pv) {
   return plane * 82944 + 288 * (48 * ti + pi) + 48 * tv + pv;
 }
 
-double stored(const std::string& file, std::size_t index) {
+double stored_at(const std::string& file, std::size_t index) {
   double value = 0;
   std::memcpy(&value, file.data() + 8 * index, sizeof value);
   return value;
@@ -82,7 +80,7 @@ double looked_up(const std::string& file, std::size_t plane, const Directions& d
       weight *= (corner >> (2 + k) & 1U) != 0 ? right_share : 1 - right_share;
       p[k] = (static_cast<std::size_t>(left) + (corner >> (2 + k) & 1U)) % 48;
     }
-    sum += weight * stored(file, place(plane, t[0], p[0], t[1], p[1]));
+    sum += weight * stored_at(file, place(plane, t[0], p[0], t[1], p[1]));
   }
   return std::max(0.0, codes ? as_light(sum) : sum);
 }
@@ -99,8 +97,8 @@ TEST_CASE("UTIA files hold planes of the light's and the eye's angles, as codes 
   write_table(table, folder / "t.linear.bin");
   const std::string codes = read_file(folder / "t.bin");
   const std::string linear = read_file(folder / "t.linear.bin");
-  REQUIRE(codes.size() == kBytes);
-  REQUIRE(linear.size() == kBytes);
+  REQUIRE(codes.size() == kUtiaBytes);
+  REQUIRE(linear.size() == kUtiaBytes);
   double worst = 0;
   double worst_code = 0;
   for (std::size_t ti = 0; ti < 6; ++ti) {
@@ -113,8 +111,8 @@ TEST_CASE("UTIA files hold planes of the light's and the eye's angles, as codes 
           for (std::size_t c = 0; c < 3; ++c) {
             const double f = model.evaluate(geometry).total(c);
             const std::size_t index = place(c, ti, pi, tv, pv);
-            worst = std::max(worst, std::abs(stored(linear, index) / f - 1));
-            worst_code = std::max(worst_code, std::abs(as_light(stored(codes, index)) / f - 1));
+            worst = std::max(worst, std::abs(stored_at(linear, index) / f - 1));
+            worst_code = std::max(worst_code, std::abs(as_light(stored_at(codes, index)) / f - 1));
           }
         }
       }
@@ -159,7 +157,7 @@ TEST_CASE(
       ++in_gap;
     } else {
       worst = std::max(worst, off);
-      const double single = as_light(static_cast<float>(stored(file, at)));
+      const double single = as_light(static_cast<float>(stored_at(file, at)));
       worst_single = std::max(worst_single, f == 0 ? single : std::abs(single / f - 1));
     }
   }
@@ -183,10 +181,10 @@ TEST_CASE("where a UTIA table looks along the normal, its azimuth does not count
       for (std::size_t c = 0; c < 3; ++c) {
         for (std::size_t p = 0; p < 48; ++p) {
           for (std::size_t other = 0; other < 288; ++other) {
-            equal = equal && stored(file, place(c, 0, p, 0, other)) ==
-                                 stored(file, place(c, 0, 0, 0, other));
-            equal = equal && stored(file, place(c, other / 48, other % 48, 0, p)) ==
-                                 stored(file, place(c, other / 48, other % 48, 0, 0));
+            equal = equal && stored_at(file, place(c, 0, p, 0, other)) ==
+                                 stored_at(file, place(c, 0, 0, 0, other));
+            equal = equal && stored_at(file, place(c, other / 48, other % 48, 0, p)) ==
+                                 stored_at(file, place(c, other / 48, other % 48, 0, 0));
           }
         }
       }
@@ -228,7 +226,7 @@ TEST_CASE("between the nodes of a UTIA table its readers' rule holds, up to the 
     CHECK(clamped > 100);
     CHECK(beyond > 1000);
   }
-  // At the nodes the rule gives what is stored there.
+  // At the nodes the rule gives what is stored_at there.
   const Table back = read_table(folder / "t.bin");
   double worst = 0;
   for (std::size_t cell = 0; cell < 82944; cell += 97) {
@@ -245,7 +243,7 @@ TEST_CASE("between the nodes of a UTIA table its readers' rule holds, up to the 
 
 TEST_CASE("negative UTIA codes read as 0 and are counted, linear ones and NaN are kept") {
   const TemporaryFolder folder;
-  std::string file(kBytes, '\0');
+  std::string file(kUtiaBytes, '\0');
   const auto put = [&](std::size_t index, double value) {
     std::memcpy(file.data() + 8 * index, &value, 8);
   };
@@ -275,8 +273,8 @@ TEST_CASE("negative UTIA codes read as 0 and are counted, linear ones and NaN ar
 TEST_CASE("files of another size are no UTIA files, and tables of other grids are refused") {
   const TemporaryFolder folder;
   for (const char* const name : {"bad.bin", "bad.linear.bin"}) {
-    for (const std::size_t size :
-         {std::size_t{0}, std::size_t{7}, kBytes - 8, kBytes - 1, kBytes + 1, kBytes + 8}) {
+    for (const std::size_t size : {std::size_t{0}, std::size_t{7}, kUtiaBytes - 8, kUtiaBytes - 1,
+                                   kUtiaBytes + 1, kUtiaBytes + 8}) {
       write_file(folder / name, std::string(size, '\0'));
       CHECK_THROWS_WITH(read_table(folder / name),
                         ContainsSubstring((folder / name).string() + ": ") &&
@@ -328,8 +326,8 @@ TEST_CASE("an EXR table on UTIA's grid is the picture that ALTA reads as UTIA da
     for (std::size_t cell = 0; cell < 82944; ++cell) {
       const std::size_t row = cell / 288;
       const std::size_t column = cell % 288;
-      const float f =
-          static_cast<float>(stored(file, place(c, row / 48, row % 48, column / 48, column % 48)));
+      const float f = static_cast<float>(
+          stored_at(file, place(c, row / 48, row % 48, column / 48, column % 48)));
       equal = equal && pixels[row * 288 + column] == f;
     }
     CHECK(equal);

@@ -35,8 +35,8 @@ TEST_CASE("a warp and its inverse undo each other, in one slice and between four
             ? only_slice(static_cast<std::size_t>(random.integer(0, 5)))
             : blend_slices(phi, theta, random.uniform(-2, 3), random.uniform(-0.5, 1.5));
     for (int k = 0; k < 20; ++k) {
-      const SquarePoint u = {random.unit(), random.unit()};
-      const SquarePoint back = warp.invert(warp.sample(u, blend), blend);
+      const RglPoint u = {random.unit(), random.unit()};
+      const RglPoint back = warp.invert(warp.sample(u, blend), blend);
       worst = std::max({worst, std::abs(back.x - u.x), std::abs(back.y - u.y)});
     }
   }
@@ -58,8 +58,8 @@ TEST_CASE("a warp's density is that of its samples, and adds up to 1") {
   for (int n = 0; n < 200; ++n) {
     // How much of the even square is taken to a small square around a point inside a patch.
     const double h = 1e-4;
-    const SquarePoint at = {(random.integer(0, 3) + random.uniform(0.01, 0.99)) / 4,
-                            (random.integer(0, 2) + random.uniform(0.01, 0.99)) / 3};
+    const RglPoint at = {(random.integer(0, 3) + random.uniform(0.01, 0.99)) / 4,
+                         (random.integer(0, 2) + random.uniform(0.01, 0.99)) / 3};
     const auto u = [&](double x, double y) { return warp.invert({at.x + x, at.y + y}, blend); };
     const double x_x = (u(h, 0).x - u(-h, 0).x) / (2 * h);
     const double y_y = (u(0, h).y - u(0, -h).y) / (2 * h);
@@ -79,9 +79,9 @@ TEST_CASE("a warp's density is that of its samples, and adds up to 1") {
 
 TEST_CASE("rows without density are skipped, and their points stay finite") {
   const Warp warp(3, 2, std::vector<float>{1, 1, 1, 1, 0, 0});
-  const SquarePoint far = warp.sample({0.5, 1}, only_slice(0));
+  const RglPoint far = warp.sample({0.5, 1}, only_slice(0));
   CHECK(far.y == 1);
-  const SquarePoint back = warp.invert({0.5, 1}, only_slice(0));
+  const RglPoint back = warp.invert({0.5, 1}, only_slice(0));
   CHECK(back.x == 0);
   CHECK(std::abs(back.y - 1) <= 1e-15);
   const Warp empty(2, 2, std::vector<float>(4, 0.0F));

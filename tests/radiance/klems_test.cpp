@@ -85,10 +85,6 @@ std::array<double, 3> dense_mean(const Producer& producer, const Patch& light, c
   return sum;
 }
 
-std::unique_ptr<Producer> pair_producer(const Material& material) {
-  return make_producer(material_spec(material, {}, AnyPairs{}), 1);
-}
-
 double relative(double a, double b) { return std::abs(a - b) / std::abs(b); }
 
 }  // namespace

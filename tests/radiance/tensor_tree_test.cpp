@@ -129,10 +129,6 @@ double luminance(const std::array<double, 3>& rgb) {
   return 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
 }
 
-std::unique_ptr<Producer> pair_producer(const Material& material) {
-  return make_producer(material_spec(material, {}, AnyPairs{}), 1);
-}
-
 }  // namespace
 
 TEST_CASE("a tensor tree holds the means of its boxes, where its readers look") {

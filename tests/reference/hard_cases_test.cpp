@@ -9,7 +9,6 @@
 namespace clothbrdf::test {
 namespace {
 
-constexpr double kPromise = 1e-13;
 /// Above this exponent exp itself costs more than the rest: its argument's rounding is magnified X
 /// times.
 constexpr double kLargestExponent = 300;
@@ -17,8 +16,8 @@ constexpr double kPerExponent = 4e-16;
 
 /// Model.md, section 9. X is the exponent of the yarn's strongest path, k = 1, which the deeper
 /// ones cannot outweigh.
-double promise(std::size_t component, const Material& material, std::size_t channel,
-               const ReferenceValues& exact) {
+double hard_promise(std::size_t component, const Material& material, std::size_t channel,
+                    const ReferenceValues& exact) {
   if (component == 0) return kPromise;
   double largest = 0;
   const double x = static_cast<double>(exact.cos_theta_d);
@@ -59,8 +58,8 @@ TEST_CASE(
     const DirectionPair pair = draw.pair();
     const ReferenceValues exact = reference_values(material, pair);
     nearly_one += material.warp.refractive_index < 1 + 1e-6;
-    for (std::size_t c = 0; c < 3; ++c) beyond += promise(1, material, c, exact) > kPromise;
-    compare_with_reference(material, pair, exact, promise, worst);
+    for (std::size_t c = 0; c < 3; ++c) beyond += hard_promise(1, material, c, exact) > kPromise;
+    compare_with_reference(material, pair, exact, hard_promise, worst);
   }
   worst.print_to_cout("hard materials, seed " + std::to_string(seed));
   CHECK(worst.largest() <= 1);

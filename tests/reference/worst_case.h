@@ -12,6 +12,8 @@
 
 namespace clothbrdf::test {
 
+/// Relative error of ClothModel<double> (model.md, section 9).
+inline constexpr double kPromise = 1e-13;
 /// Smaller results are excepted from the promise: their parts can be subnormal.
 inline const Real kSmallest("1e-290");
 

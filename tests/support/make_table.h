@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 
 #include "formats/format.h"
 #include "formats/material_json.h"
@@ -14,6 +15,13 @@ inline Table preset_table(const std::string& name, const Grid& grid, bool with_c
   const TableSpec spec =
       material_spec(read_material(preset(name)), {}, grid, cells, with_components);
   return collect(*make_producer(spec, 1), 1);
+}
+
+inline Table read_table(const std::filesystem::path& path) { return format_for(path).read(path); }
+
+/// f_r of a material at any pairs of directions.
+inline std::unique_ptr<Producer> pair_producer(const Material& material) {
+  return make_producer(material_spec(material, {}, AnyPairs{}), 1);
 }
 
 inline void write_table(const Producer& producer, const std::filesystem::path& path,

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <iomanip>
+#include <numbers>
 #include <ostream>
 #include <random>
 #include <string>
@@ -13,6 +14,8 @@
 #include "model/material.h"
 
 namespace clothbrdf::test {
+
+inline constexpr double kPi = std::numbers::pi;
 
 /// The seed of the random tests: CLOTHBRDF_SEED, or always the same one.
 inline std::uint64_t seed_from_environment() {

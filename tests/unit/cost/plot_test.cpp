@@ -85,8 +85,8 @@ TEST_CASE("gnuplot renders a picture of costs in its size, whatever the names in
   const std::string bytes = read_file(picture);
   REQUIRE(bytes.size() > 5000);
   CHECK(bytes.starts_with("\x89PNG"));
-  CHECK(big_endian(bytes, 16) == kPlotWidth);
-  CHECK(big_endian(bytes, 20) == kPlotHeight);
+  CHECK(big_endian(bytes, 16) == kCostPlotWidth);
+  CHECK(big_endian(bytes, 20) == kCostPlotHeight);
 }
 
 }  // namespace clothbrdf::test

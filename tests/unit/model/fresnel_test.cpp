@@ -10,21 +10,21 @@
 namespace clothbrdf::test {
 namespace {
 
-using Real = boost::multiprecision::cpp_bin_float_100;
+using Exact = boost::multiprecision::cpp_bin_float_100;
 
 /// A dozen roundings.
 constexpr double kDozenRoundings = 1.5e-15;
 
 /// Fresnel's formulas with sines and cosines, both polarisations, as they stand in textbooks.
-Real textbook_reflectance(const Real& cos_i, const Real& n) {
-  const Real cos_t = sqrt(Real(1 - (1 - cos_i * cos_i) / (n * n)));
-  const Real s = (cos_i - n * cos_t) / (cos_i + n * cos_t);
-  const Real p = (n * cos_i - cos_t) / (n * cos_i + cos_t);
+Exact textbook_reflectance(const Exact& cos_i, const Exact& n) {
+  const Exact cos_t = sqrt(Exact(1 - (1 - cos_i * cos_i) / (n * n)));
+  const Exact s = (cos_i - n * cos_t) / (cos_i + n * cos_t);
+  const Exact p = (n * cos_i - cos_t) / (n * cos_i + cos_t);
   return (s * s + p * p) / 2;
 }
 
-double relative(double value, const Real& exact) {
-  return static_cast<double>(abs(Real(value / exact - 1)));
+double relative(double value, const Exact& exact) {
+  return static_cast<double>(abs(Exact(value / exact - 1)));
 }
 
 TEST_CASE("r, t and the cosine inside keep their digits near index 1 and at grazing incidence") {
@@ -36,11 +36,12 @@ TEST_CASE("r, t and the cosine inside keep their digits near index 1 and at graz
     const double n = k % 3 == 0 ? 1 + draw.log_uniform(1e-12, 1) : draw.uniform(1.01, 3);
     const double x = k % 2 == 0 ? draw.log_uniform(1e-9, 1) : draw.uniform(0, 1);
     const Interface<double> i = fresnel(x, n);
-    const Real r = textbook_reflectance(x, n);
+    const Exact r = textbook_reflectance(x, n);
     // Where p is nearly 0 beside s (Brewster) and where index and cosine are both extreme, all must
     // hold.
-    worst = std::max({worst, relative(i.reflected, r), relative(i.transmitted, Real(1 - r)),
-                      relative(i.cos_theta_t, sqrt(Real(1 - (1 - Real(x) * x) / (Real(n) * n))))});
+    worst =
+        std::max({worst, relative(i.reflected, r), relative(i.transmitted, Exact(1 - r)),
+                  relative(i.cos_theta_t, sqrt(Exact(1 - (1 - Exact(x) * x) / (Exact(n) * n))))});
     CHECK(std::fabs(i.reflected + i.transmitted - 1) <= 0x1p-52);
     mostly_reflected += i.reflected >= 0.5;
     nearly_one += n < 1 + 1e-6;
@@ -50,7 +51,7 @@ TEST_CASE("r, t and the cosine inside keep their digits near index 1 and at graz
   CHECK(mostly_reflected > 300);
   CHECK(nearly_one > 300);
   CHECK(relative(fresnel(1e-9, 1 + 1e-12).transmitted,
-                 Real(1 - textbook_reflectance(1e-9, 1 + 1e-12))) <= kDozenRoundings);
+                 Exact(1 - textbook_reflectance(1e-9, 1 + 1e-12))) <= kDozenRoundings);
 }
 
 TEST_CASE("normal incidence reflects ((n - 1) / (n + 1))^2") {

@@ -13,7 +13,7 @@ namespace {
 using Real = boost::multiprecision::cpp_bin_float_50;
 
 // Model.md, section 9.
-constexpr double kPromise = 1e-13;
+constexpr double kModelPromise = 1e-13;
 /// Reciprocity: both orders go through the same formulas, only their roundings differ.
 constexpr double kReciprocity = 1e-14;
 
@@ -78,7 +78,7 @@ TEST_CASE("f does not change when both directions turn by half a turn, or with t
     }
   }
   CHECK(half_turn <= kReciprocity);
-  CHECK(with_cloth <= kPromise);
+  CHECK(with_cloth <= kModelPromise);
 }
 
 TEST_CASE("f is 0 on the horizon and below it, positive above") {
@@ -110,7 +110,7 @@ TEST_CASE("swapping the yarns and turning the cloth by 90 degrees changes nothin
     const DirectionPair pair = {draw.uniform(0, 80), draw.uniform(0, 360), draw.uniform(0, 80),
                                 draw.uniform(0, 360)};
     CHECK(relative(evaluate(material, pair).total(1), evaluate(swapped, pair).total(1)) <=
-          kPromise);
+          kModelPromise);
   }
 }
 

@@ -19,7 +19,7 @@ namespace {
 constexpr Part kParts[] = {Part::kTotal, Part::kSpecular, Part::kInternal, Part::kDiffuse};
 
 // What the batch evaluator promises, times the condition number of the lobe.
-constexpr double kSameToRounding = 1e-12;
+constexpr double kSameImage = 1e-12;
 
 double condition(const Material& material, const Directions& d) {
   double narrowest = 1;
@@ -30,7 +30,7 @@ double condition(const Material& material, const Directions& d) {
   return std::max(1.0, 1 / (narrowest * x));
 }
 
-double relative_error(double value, double exact) {
+double relative_difference(double value, double exact) {
   return exact == 0 ? std::abs(value) : std::abs(value / exact - 1);
 }
 
@@ -56,7 +56,7 @@ Rgb expected(const ClothModel<double>& model, const Directions& d, Part part) {
   return values;
 }
 
-std::string refusal(const std::function<void()>& call) {
+std::string cloth_refusal(const std::function<void()>& call) {
   try {
     call();
   } catch (const InputError& error) {
@@ -100,8 +100,8 @@ TEST_CASE("a material's shading is the model's, part by part") {
       for (std::size_t p = 0; p < pairs.size(); ++p) {
         const Rgb exact = expected(model, pairs[p], part);
         for (std::size_t c = 0; c < 3; ++c) {
-          worst =
-              std::max(worst, relative_error(f[p][c], exact[c]) / condition(material, pairs[p]));
+          worst = std::max(worst,
+                           relative_difference(f[p][c], exact[c]) / condition(material, pairs[p]));
           if (exact[c] > 0) ++lit;
         }
       }
@@ -109,7 +109,7 @@ TEST_CASE("a material's shading is the model's, part by part") {
   }
   std::cout << "shading against the model: worst relative error over condition number " << worst
             << " (seed " << seed << ")\n";
-  CHECK(worst <= kSameToRounding);
+  CHECK(worst <= kSameImage);
   CHECK(lit > 3000);
 }
 
@@ -124,7 +124,7 @@ TEST_CASE("the parts add up to the total, and nothing is seen at or below the ho
       for (std::size_t c = 0; c < 3; ++c) sum[c] += f[c];
     }
     const Rgb total = cloth->shading(Part::kTotal)(d);
-    for (std::size_t c = 0; c < 3; ++c) CHECK(relative_error(sum[c], total[c]) <= kSameToRounding);
+    for (std::size_t c = 0; c < 3; ++c) CHECK(relative_difference(sum[c], total[c]) <= kSameImage);
     for (const double theta : {90.0, 100.0, 180.0}) {
       const Directions below = {direction(theta, 30.0), direction(20.0, 0.0)};
       CHECK(cloth->shading(Part::kTotal)(below) == Rgb{});
@@ -151,13 +151,13 @@ TEST_CASE("turned turns the weave counter-clockwise, as rotation_deg does") {
     material.rotation_deg += turn;
     const Rgb exact = expected(ClothModel<double>(material), d, Part::kTotal);
     for (std::size_t c = 0; c < 3; ++c) {
-      worst = std::max(worst, relative_error(f[c], exact[c]));
-      other_way = std::max(other_way, relative_error(back[c], exact[c]));
+      worst = std::max(worst, relative_difference(f[c], exact[c]));
+      other_way = std::max(other_way, relative_difference(back[c], exact[c]));
     }
   }
   std::cout << "turned against rotation_deg: worst relative error " << worst << " (seed " << seed
             << ")\n";
-  CHECK(worst <= kSameToRounding);
+  CHECK(worst <= kSameImage);
   CHECK(other_way > 0.1);
 }
 
@@ -201,7 +201,7 @@ TEST_CASE("a material of wavelengths is shaded by its channels' RGB, part by par
   }
   std::cout << "shading of spectral materials: worst relative error over condition number " << worst
             << " (seed " << seed << ")\n";
-  CHECK(worst <= kSameToRounding);
+  CHECK(worst <= kSameImage);
   CHECK(lit > 1);
 }
 
@@ -230,19 +230,21 @@ TEST_CASE("a grey material of wavelengths draws the sheet of the grey RGB materi
   }
   std::cout << "grey spectral sheet: off by " << worst << " of " << brightest << '\n';
   CHECK(brightest > 0.1);
-  CHECK(worst <= kSameToRounding * brightest);
+  CHECK(worst <= kSameImage * brightest);
 }
 
 TEST_CASE("materials without wavelengths that are not of R, G and B are refused in one line") {
   Material material = read_material(preset("silk"));
   material.warp.absorption = material.weft.absorption = {0.1, 0.2};
-  CHECK(refusal([&] { material_cloth(material, "s.json"); }) ==
+  CHECK(cloth_refusal([&] { material_cloth(material, "s.json"); }) ==
         "s.json: absorption has 2 values; a picture needs R, G and B, or wavelengths_nm");
 }
 
 TEST_CASE("tables without channels R, G and B or without a grid are refused in one line") {
   const std::string needs = "t: has no channels R, G and B; a picture needs them";
-  const auto why = [](Table table) { return refusal([&] { table_cloth(std::move(table), "t"); }); };
+  const auto why = [](Table table) {
+    return cloth_refusal([&] { table_cloth(std::move(table), "t"); });
+  };
   CHECK(why(counting_table({{"450nm", Part::kTotal, 0}, {"550nm", Part::kTotal, 1}})) == needs);
   CHECK(why(counting_table({{"R", Part::kTotal, 0}, {"G", Part::kTotal, 1}})) == needs);
   CHECK(why(counting_table(
@@ -267,8 +269,8 @@ TEST_CASE("a table's channels are found by name and part, whatever their order")
   const Rgb total = cloth->shading(Part::kTotal)(d);
   const Rgb internal = cloth->shading(Part::kInternal)(d);
   for (std::size_t c = 0; c < 3; ++c) {
-    CHECK(relative_error(total[c], Rgb{3, 4, 1}[c]) <= 1e-14);  // shares of 16 nodes add up
-    CHECK(relative_error(internal[c], Rgb{5, 2, 6}[c]) <= 1e-14);
+    CHECK(relative_difference(total[c], Rgb{3, 4, 1}[c]) <= 1e-14);  // shares of 16 nodes add up
+    CHECK(relative_difference(internal[c], Rgb{5, 2, 6}[c]) <= 1e-14);
   }
   CHECK(cloth->has(Part::kInternal));
   CHECK_FALSE(cloth->has(Part::kSpecular));
@@ -289,7 +291,7 @@ TEST_CASE(
     REQUIRE(node.above_horizon());
     const Rgb exact = whole->shading(part)(node);
     const Rgb f = parts->shading(part)(node);
-    for (std::size_t c = 0; c < 3; ++c) CHECK(relative_error(f[c], exact[c]) <= kSameToRounding);
+    for (std::size_t c = 0; c < 3; ++c) CHECK(relative_difference(f[c], exact[c]) <= kSameImage);
   }
 }
 

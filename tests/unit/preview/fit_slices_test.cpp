@@ -15,7 +15,7 @@
 namespace clothbrdf::test {
 namespace {
 
-const std::vector<Grid>& grids() {
+const std::vector<Grid>& fitted_grids() {
   static const std::vector<Grid> kGrids = {halfdiff3d(12, 10, 8), halfdiff4d(9, 6, 8, 7),
                                            inout(6, 8, 6, 8)};
   return kGrids;
@@ -74,7 +74,7 @@ constexpr int kMapArea = kResidualFrame.width * kResidualFrame.height;
 }  // namespace
 
 TEST_CASE("the residuals of a perfect fit are white, those of a wrong one are not") {
-  for (const Grid& grid : grids()) {
+  for (const Grid& grid : fitted_grids()) {
     for (const bool average : {false, true}) {
       if (average && grid.kind == GridKind::kInOut) continue;  // slow, and the same code
       CAPTURE(grid.description(), average);
@@ -98,7 +98,7 @@ TEST_CASE("the residuals of a perfect fit are white, those of a wrong one are no
 TEST_CASE("dots are the table's values, lines are the fitted material's at the same cells") {
   const Rgb colours[] = {screen_colour(200, 25, 30), screen_colour(20, 125, 35),
                          screen_colour(30, 80, 200)};
-  for (const Grid& grid : grids()) {
+  for (const Grid& grid : fitted_grids()) {
     CAPTURE(grid.description());
     const Table table = preset_table("silk", grid);
     const Table fit = preset_table("tamamushi", grid);
@@ -144,7 +144,7 @@ TEST_CASE("channels in another order, one or many of them, meet their own absorp
 }
 
 TEST_CASE("cells that hold no measurement leave no trace") {
-  for (const Grid& grid : grids()) {
+  for (const Grid& grid : fitted_grids()) {
     const Table table = preset_table("silk", grid);
     for (const double bad : {std::numeric_limits<double>::quiet_NaN(), -1.0,
                              std::numeric_limits<double>::infinity()}) {

@@ -17,7 +17,7 @@ constexpr int kGap = 4;
 constexpr int kStrip = 10;  // text and 3 below it
 
 // A box of pixels of a picture.
-struct Box {
+struct PixelBox {
   int x;
   int y;
   int width;
@@ -28,7 +28,7 @@ struct Box {
 };
 
 // Pixels of a box that are not of a colour.
-int other_than(const Rgb& colour, const Image& image, const Box& box) {
+int other_than(const Rgb& colour, const Image& image, const PixelBox& box) {
   int count = 0;
   for (int y = box.y; y < box.y + box.height; ++y) {
     for (int x = box.x; x < box.x + box.width; ++x) {
@@ -70,8 +70,8 @@ TEST_CASE("panels stand row by row, each below its caption, nothing else is draw
       for (std::size_t c = 0; c < rows[r].size(); ++c) {
         const int x = kGap * scale + static_cast<int>(c) * step_x;
         const int y = kGap * scale + static_cast<int>(r) * step_y;
-        const Box caption = {x, y, 2 * kStep * scale, 7 * scale};
-        const Box panel = {x, y + kStrip * scale, width, height};
+        const PixelBox caption = {x, y, 2 * kStep * scale, 7 * scale};
+        const PixelBox panel = {x, y + kStrip * scale, width, height};
         const Rgb& colour = rows[r][c].image.at(1, 1);
         CHECK(other_than(colour, picture, panel) == 1);
         CHECK(picture.at(panel.x, panel.y) == rows[r][c].image.at(0, 0));
@@ -126,7 +126,7 @@ TEST_CASE("text that reaches over an edge of the picture is cut off there") {
     for (const int y : {-30, -7, -4, 0, 8, 11, 12, 90}) {
       Image image(20, 12);
       draw_text(image, x, y, 1, "#", kWhite);
-      const Box box = {x, y, 5, 7};
+      const PixelBox box = {x, y, 5, 7};
       for (int row = 0; row < 12; ++row) {
         for (int column = 0; column < 20; ++column) {
           CHECK((image.at(column, row) == kWhite) == box.holds(column, row));

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <functional>
 #include <iostream>
-#include <numbers>
 #include <span>
 #include <utility>
 
@@ -15,7 +14,6 @@
 namespace clothbrdf::test {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 // Some roundings of numbers of size 1.
 constexpr double kRounding = 4e-15;
 

@@ -8,7 +8,7 @@
 namespace clothbrdf::test {
 namespace {
 
-const std::vector<Grid>& grids() {
+const std::vector<Grid>& sliced_grids() {
   static const std::vector<Grid> kGrids = {
       halfdiff3d(),     halfdiff3d(9, 7, 10, 360), halfdiff3d(1, 1, 1),
       halfdiff4d(),     halfdiff4d(8, 6, 7, 9),    halfdiff4d(1, 1, 1, 1),
@@ -20,7 +20,7 @@ const std::vector<Grid>& grids() {
 }  // namespace
 
 TEST_CASE("slices are runs of different cells inside the grid and on their axes") {
-  for (const Grid& grid : grids()) {
+  for (const Grid& grid : sliced_grids()) {
     CAPTURE(grid.description());
     const std::vector<Slice> slices = typical_slices(grid);
     REQUIRE(slices.size() == 5);
@@ -75,7 +75,7 @@ TEST_CASE("the plane of incidence holds the eye on the light's side and on the o
 }
 
 TEST_CASE("the numbers of an angle's axis stand at the nodes of their angles") {
-  for (const Grid& grid : grids()) {
+  for (const Grid& grid : sliced_grids()) {
     for (const Axis& axis : grid.axes) {
       const PlotAxis plot = angle_axis(axis);
       CAPTURE(grid.description(), axis.name);

@@ -13,22 +13,22 @@ namespace clothbrdf::test {
 namespace {
 
 // More than roundings of sums of a few hundred terms.
-constexpr double kRounding = 1e-9;
+constexpr double kSumRounding = 1e-9;
 
-double radians(double degrees) { return degrees * pi<double>() / 180; }
+double in_radians(double degrees) { return degrees * pi<double>() / 180; }
 
 AngleBox random_box(RandomInputs& draw, double size) {
   AngleBox box;
   for (std::size_t a = 0; a < 4; ++a) {
     const bool theta = a % 2 == 0;
-    const double low = theta ? draw.uniform(0, radians(88)) : draw.uniform(-4, 4);
+    const double low = theta ? draw.uniform(0, in_radians(88)) : draw.uniform(-4, 4);
     const double width = size * draw.unit() * (theta ? 0.5 : 1);
-    box.angles[a] = {low, theta ? std::min(low + width, radians(89)) : low + width};
+    box.angles[a] = {low, theta ? std::min(low + width, in_radians(89)) : low + width};
   }
   return box;
 }
 
-struct Worst {
+struct LoosestBound {
   double outside = -1;  ///< how far a value is beyond its bounds, relative
   double loosest = 0;   ///< upper bound over value, of point boxes
   int compared = 0;
@@ -36,7 +36,7 @@ struct Worst {
 
 // What a candidate takes away at pairs of a box, against the bounds of it.
 void compare(const Material& material, const Effects& before, const Candidate& candidate,
-             const AngleBox& box, RandomInputs& draw, Worst& worst) {
+             const AngleBox& box, RandomInputs& draw, LoosestBound& worst) {
   const ClothModel<double> with(material, before);
   Effects effects = before;
   leave_out(effects, candidate);
@@ -56,7 +56,7 @@ void compare(const Material& material, const Effects& before, const Candidate& c
       whole = std::max(whole, radiance[c] * g.cos_theta_i * std::max(f.total(c), less.total(c)));
     }
     ++worst.compared;
-    const double rounding = kRounding * whole;
+    const double rounding = kSumRounding * whole;
     worst.outside = std::max({worst.outside, (value - rounding - bounds.high) / whole,
                               (bounds.low - value - rounding) / whole});
     INFO(candidate.effect << ": " << value << " of " << whole << " in " << bounds.low << " to "
@@ -68,7 +68,7 @@ void compare(const Material& material, const Effects& before, const Candidate& c
 
 TEST_CASE("what an effect takes away lies within the bounds of a box, for boxes of any size") {
   RandomInputs draw(seed_from_environment());
-  Worst worst;
+  LoosestBound worst;
   for (int n = 0; n < soak_cases(150); ++n) {
     MaterialRanges ranges;
     ranges.most_layers = draw.chance(0.1) ? 20 : 6;

@@ -24,8 +24,8 @@ void write_text(AtomicFile& file, std::string_view text, std::uint64_t offset = 
   file.write_at(offset, std::as_bytes(std::span(text)));
 }
 
-// What a refusal says; empty where there is none.
-std::string refusal(const std::function<void()>& act) {
+// What a file_refusal says; empty where there is none.
+std::string file_refusal(const std::function<void()>& act) {
   try {
     act();
   } catch (const WorkError& error) {
@@ -35,7 +35,7 @@ std::string refusal(const std::function<void()>& act) {
 }
 
 std::string refusal_to_open(const path& target) {
-  return refusal([&] { const AtomicFile file(target); });
+  return file_refusal([&] { const AtomicFile file(target); });
 }
 
 // Runs in a child process, where limits and mounts bind nobody else; what it returns.
@@ -185,7 +185,7 @@ TEST_CASE("a commit that fails leaves nothing") {
   {
     AtomicFile file(target);
     std::filesystem::create_directory(target);
-    CHECK_THAT(refusal([&] { file.commit(); }), ContainsSubstring("cannot write: "));
+    CHECK_THAT(file_refusal([&] { file.commit(); }), ContainsSubstring("cannot write: "));
   }
   CHECK(std::filesystem::is_directory(target));
   CHECK(folder.entry_count() == 1);
@@ -225,7 +225,7 @@ TEST_CASE("space that cannot be had is told when it is set aside, and when it is
       std::signal(SIGXFSZ, SIG_IGN);
       ::setrlimit(RLIMIT_FSIZE, &limit);
       AtomicFile file(target);
-      return refusal([&] { act(file); });
+      return file_refusal([&] { act(file); });
     });
   };
   const std::string too_large = target.string() + ": cannot write: File too large";
@@ -252,7 +252,7 @@ TEST_CASE("a full disk is told when space is set aside") {
   }
   {
     AtomicFile file(folder / "table");
-    CHECK_THAT(refusal([&] { file.reserve(2 << 20); }),
+    CHECK_THAT(file_refusal([&] { file.reserve(2 << 20); }),
                ContainsSubstring("cannot write: No space left on device"));
   }
   CHECK(folder.entry_count() == 0);

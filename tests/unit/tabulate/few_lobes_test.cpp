@@ -16,8 +16,8 @@ double density(const Lobe<double>& lobe, double along, double across, double nor
 }
 
 // The internal light of weights, by all lobes of the yarn and by the few.
-double relative_error(const PreparedYarn<double>& yarn, const FewLobes& few,
-                      const std::vector<double>& weights, RandomInputs& random) {
+double lobe_error(const PreparedYarn<double>& yarn, const FewLobes& few,
+                  const std::vector<double>& weights, RandomInputs& random) {
   const double tilt = std::atan(random.log_uniform(1e-4, 1e3));
   const double azimuth = random.uniform(0, 2 * pi<double>());
   const double along = std::sin(tilt) * std::cos(azimuth);
@@ -65,7 +65,7 @@ TEST_CASE("few lobes stand for all lobes of a yarn at any half vector, to the to
       for (int k = 0; k < 100; ++k) {
         std::vector<double> weights;
         for (std::size_t j = 1; j < yarn.lobes.size(); ++j) weights.push_back(random.unit());
-        worst = std::max(worst, relative_error(yarn, few, weights, random));
+        worst = std::max(worst, lobe_error(yarn, few, weights, random));
       }
     }
     std::cout << "few lobes at " << tolerance << ": worst " << worst << ", at most " << most

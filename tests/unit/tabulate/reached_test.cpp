@@ -10,10 +10,6 @@
 namespace clothbrdf::test {
 namespace {
 
-Material preset(const std::string& name) {
-  return read_material(CLOTHBRDF_SOURCE_DIR "/materials/" + name + ".json");
-}
-
 // Light from one side, an eye at the other, the cloth turned twice.
 Reach some_directions() {
   return {{{{20, 50}, {-30, 40}}, {{5, 5}, {0, 360}}}, {{{30, 60}, {150, 200}}}, {0, 75}};
@@ -57,8 +53,8 @@ Compared with_and_without_reach(TableSpec spec, Precision precision, int threads
 }  // namespace
 
 TEST_CASE("cells that a scene reaches have the bits of the whole table, the others are 0") {
-  const Material silk = preset("silk");
-  Material paper = preset("tamamushi");
+  const Material silk = read_material(preset("silk"));
+  Material paper = read_material(preset("tamamushi"));
   paper.reflectance = Reflectance::kPaper;
   paper.rotation_deg = 20;
   const CellRule average = {true, 1e-2};
@@ -70,7 +66,7 @@ TEST_CASE("cells that a scene reaches have the bits of the whole table, the othe
       material_spec(paper, {}, inout(5, 1, 6, 24)),
       material_spec(silk, {}, halfdiff3d(12, 12, 9), average),
       material_spec(silk, {}, halfdiff4d(6, 6, 6, 5), average),
-      material_spec(preset("cotton"), {}, inout(3, 6, 3, 6), {true, 0.1})};
+      material_spec(read_material(preset("cotton")), {}, inout(3, 6, 3, 6), {true, 0.1})};
   for (const TableSpec& spec : specs) {
     for (const Precision precision : {Precision::kDouble, Precision::kSingle}) {
       const Compared found = with_and_without_reach(spec, precision, 2);
@@ -87,7 +83,7 @@ TEST_CASE("cells that a scene reaches have the bits of the whole table, the othe
 }
 
 TEST_CASE("a scene that reaches nothing of a grid has a table of zeros") {
-  TableSpec spec = material_spec(preset("silk"), {}, halfdiff3d(10, 10, 9));
+  TableSpec spec = material_spec(read_material(preset("silk")), {}, halfdiff3d(10, 10, 9));
   spec.reach = Reach{{{{0, 0}, {0, 0}}}, {}, {0}};
   std::vector<double> values(spec.row_values(), 1.0);
   make_producer(spec, 1)->fill_rows(3, values);
@@ -95,7 +91,7 @@ TEST_CASE("a scene that reaches nothing of a grid has a table of zeros") {
 }
 
 TEST_CASE("pairs of directions without a grid have no reach") {
-  TableSpec spec = material_spec(preset("silk"), {}, AnyPairs{});
+  TableSpec spec = material_spec(read_material(preset("silk")), {}, AnyPairs{});
   spec.reach = some_directions();
   CHECK_THROWS_WITH(make_producer(spec, 1), "a reach is for the cells of a grid");
 }
