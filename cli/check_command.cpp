@@ -1,3 +1,4 @@
+#include <filesystem>
 #include <iomanip>
 #include <iostream>
 #include <memory>
@@ -7,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/check_material.h"
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "cli/progress_bar.h"
@@ -188,6 +190,10 @@ void print_json(const CheckOptions& options, const TableSpec& spec, const TableC
 
 void check(const CheckOptions& options) {
   const int threads = threads_of(options.threads);
+  if (std::filesystem::path(options.file).extension() == ".json") {
+    check_material(options.file, threads, options.json);
+    return;
+  }
   const Table table = read_table(options.file);
   ProgressBar bar;
   const TableCheck result = check_table(table, {threads, &bar.progress()});
@@ -210,10 +216,11 @@ void add_check_command(CLI::App& program) {
   CLI::App* command = program.add_subcommand(
       "check",
       "Looks for what is wrong in a table: values that are negative or no numbers, more light out "
-      "than in, one value for light to eye and another for eye to light. Exits 1 if it finds "
-      "some.\n"
-      "Example: clothbrdf check silk.exr");
-  command->add_option("TABLE", options->file, "table (" + table_endings() + ")")
+      "than in, one value for light to eye and another for eye to light. Of a material, the errors "
+      "of its values where numbers get difficult: grazing, opposite, on the crests of its lobes. "
+      "Exits 1 if something is wrong.\n"
+      "Examples: clothbrdf check silk.exr, clothbrdf check materials/silk.json");
+  command->add_option("FILE", options->file, "table (" + table_endings() + ") or material (.json)")
       ->required()
       ->type_name("FILE");
   add_threads_option(*command, options->threads);

@@ -4,14 +4,15 @@
 #include <cmath>
 
 namespace clothbrdf {
-namespace {
 
-struct Cell {
+struct WarpCell {
   std::size_t index;
   double rest;
 };
 
-Cell cell_of(double at, std::size_t nodes) {
+namespace {
+
+WarpCell cell_of(double at, std::size_t nodes) {
   const double scaled = std::clamp(at, 0.0, 1.0) * static_cast<double>(nodes - 1);
   const std::size_t index = std::min(static_cast<std::size_t>(scaled), nodes - 2);
   return {index, scaled - static_cast<double>(index)};
@@ -77,8 +78,8 @@ SliceBlend only_slice(std::size_t slice) {
 }
 
 double bilinear(std::span<const float> values, std::size_t rows, std::size_t columns, RglPoint at) {
-  const Cell x = cell_of(at.x, columns);
-  const Cell y = cell_of(at.y, rows);
+  const WarpCell x = cell_of(at.x, columns);
+  const WarpCell y = cell_of(at.y, rows);
   const float* const lower = values.data() + y.index * columns + x.index;
   const float* const upper = lower + columns;
   return lerp(lerp(double{lower[0]}, double{lower[1]}, x.rest),
@@ -88,8 +89,8 @@ double bilinear(std::span<const float> values, std::size_t rows, std::size_t col
 // The patch of a point: blended densities at its left and right edge, of the row blended at the
 // point, and the masses of the rows above and below.
 struct Warp::Patch {
-  Cell x;
-  Cell y;
+  WarpCell x;
+  WarpCell y;
   double left;
   double right;
 };

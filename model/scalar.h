@@ -19,7 +19,9 @@ inline constexpr bool kCarriesDerivative = requires(T x) {
 /// pi in the precision of T.
 template <class T>
 T pi() {
-  if constexpr (std::is_floating_point_v<T> || kCarriesDerivative<T>) {
+  if constexpr (std::is_floating_point_v<T>) {
+    return std::numbers::pi_v<T>;
+  } else if constexpr (kCarriesDerivative<T>) {
     return T(std::numbers::pi);
   } else {
     using std::acos;

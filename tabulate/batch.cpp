@@ -1,6 +1,7 @@
 #include "tabulate/batch.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "tabulate/batch_kernel.h"
@@ -109,7 +110,10 @@ void BatchEvaluator<T>::prepare_lanes(Workers workers, double tolerance) {
 template <class T>
 void BatchEvaluator<T>::evaluate(const DirectionArrays<T>& directions,
                                  std::span<T* const> values) const {
-  if (!tabulated_) return evaluate_directly(directions, values);
+  if (!tabulated_) {
+    for (std::size_t p = 0; p < directions.count; ++p) evaluate_directly(directions, p, values);
+    return;
+  }
   const SinCos<double> turn = sincosd(model_.material().rotation_deg);
   const BatchPlan<T> plan = {
       .kind = kind_,
@@ -128,25 +132,40 @@ void BatchEvaluator<T>::evaluate(const DirectionArrays<T>& directions,
       .shadowing = model_.effects().shadowing,
       .outputs = outputs_};
   const BatchTarget& target = batch_targets()[target_];
+  bool hard = false;
   if constexpr (sizeof(T) == sizeof(float)) {
-    target.run_float(plan, directions, values.data());
+    hard = target.run_float(plan, directions, values.data());
   } else {
-    target.run_double(plan, directions, values.data());
+    hard = target.run_double(plan, directions, values.data());
+  }
+  if (hard) evaluate_hard(directions, values);
+}
+
+// The kernel's condition, in operations that round the same everywhere: a value's bits must not
+// depend on the other pairs of the batch.
+template <class T>
+void BatchEvaluator<T>::evaluate_hard(const DirectionArrays<T>& directions,
+                                      std::span<T* const> values) const {
+  const auto& [wi, wo, count] = directions;
+  for (std::size_t p = 0; p < count; ++p) {
+    const T low = std::min(wi[2][p], wo[2][p]);
+    if (!(low > T(0))) continue;
+    const T largest = std::max(
+        {std::abs(wi[0][p] + wo[0][p]), std::abs(wi[1][p] + wo[1][p]), wi[2][p] + wo[2][p]});
+    if (low < kLeastHeight<T> || largest < kLeastSum<T>) evaluate_directly(directions, p, values);
   }
 }
 
 template <class T>
-void BatchEvaluator<T>::evaluate_directly(const DirectionArrays<T>& directions,
+void BatchEvaluator<T>::evaluate_directly(const DirectionArrays<T>& directions, std::size_t pair,
                                           std::span<T* const> values) const {
-  for (std::size_t p = 0; p < directions.count; ++p) {
-    const auto vector = [&](const std::array<const T*, 3>& w) {
-      return Vector3<double>{double{w[0][p]}, double{w[1][p]}, double{w[2][p]}};
-    };
-    const Components f = model_.evaluate(pair_geometry(vector(directions.wi), vector(directions.wo),
-                                                       model_.material().rotation_deg));
-    for (std::size_t c = 0; c < channels_.size(); ++c) {
-      values[c][p] = static_cast<T>(channel_value(f, channels_[c]));
-    }
+  const auto vector = [&](const std::array<const T*, 3>& w) {
+    return Vector3<double>{double{w[0][pair]}, double{w[1][pair]}, double{w[2][pair]}};
+  };
+  const Components f = model_.evaluate(
+      pair_geometry(vector(directions.wi), vector(directions.wo), model_.material().rotation_deg));
+  for (std::size_t c = 0; c < channels_.size(); ++c) {
+    values[c][pair] = static_cast<T>(channel_value(f, channels_[c]));
   }
 }
 

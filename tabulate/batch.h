@@ -47,7 +47,8 @@ inline constexpr double kBatchTolerance = sizeof(T) == sizeof(float) ? 5e-6 : 1e
 /// Error against the model, relative to the sum of a channel's directional and constant parts: the
 /// tolerance (float 5e-6, double 1e-12), times max(1, condition number of the lobe): how much
 /// h / axis magnifies the rounding of the directions themselves. 0 where a direction is on or below
-/// the horizon.
+/// the horizon. Pairs next to opposite (all of wi + wo below 2^-11) or next to the horizon (a z
+/// below 2^-40 in float, 2^-300 in double) are evaluated by the model itself.
 template <class T>
 class BatchEvaluator {
  public:
@@ -73,7 +74,9 @@ class BatchEvaluator {
  private:
   void choose_sums();
   void prepare_lanes(Workers workers, double tolerance);
-  void evaluate_directly(const DirectionArrays<T>& directions, std::span<T* const> values) const;
+  void evaluate_hard(const DirectionArrays<T>& directions, std::span<T* const> values) const;
+  void evaluate_directly(const DirectionArrays<T>& directions, std::size_t pair,
+                         std::span<T* const> values) const;
 
   const ClothModel<double>& model_;
   std::vector<Channel> channels_;

@@ -36,9 +36,9 @@ struct Block {
   HWY_ALIGN T none[kBlock];                    // sums of channels without direction: 0
 };
 
-/// What the lanes of kBlock pairs share: lanes over pairs.
+/// What the lanes of kBlock pairs share: lanes over pairs. Returns whether a pair is hard.
 template <class T>
-void prepare(const BatchPlan<T>& plan, const DirectionArrays<T>& in, Block<T>& block) {
+bool prepare(const BatchPlan<T>& plan, const DirectionArrays<T>& in, Block<T>& block) {
   const hn::ScalableTag<T> d;
   const hn::RebindToUnsigned<decltype(d)> du;
   const std::size_t n = hn::Lanes(d);
@@ -54,6 +54,9 @@ void prepare(const BatchPlan<T>& plan, const DirectionArrays<T>& in, Block<T>& b
       hn::ShiftRightSame(hn::BitCast(du, hn::Set(d, static_cast<T>(kWeightShift))), shift);
   const auto row_size = hn::Set(du, static_cast<hwy::MakeUnsigned<T>>(plan.row_size));
   const auto mantissa = hn::Set(du, (hwy::MakeUnsigned<T>{1} << shift) - 1);
+  const auto least_sum = hn::Set(d, kLeastSum<T>);
+  const auto least_height = hn::Set(d, kLeastHeight<T>);
+  auto hard = hn::Gt(zero, zero);
   for (std::size_t p = 0; p < kBlock; p += n) {
     const auto load = [&](const T* from) { return hn::LoadU(d, from + p); };
     const auto wi_z = load(in.wi[2]);
@@ -65,6 +68,9 @@ void prepare(const BatchPlan<T>& plan, const DirectionArrays<T>& in, Block<T>& b
     const auto low = hn::Min(wi_z, wo_z);
     const auto high = hn::Max(wi_z, wo_z);
     const auto above = hn::And(hn::Gt(low, zero), hn::Gt(length2, zero));
+    const auto largest = hn::Max(hn::Max(hn::Abs(h_x), hn::Abs(h_y)), h_z);
+    const auto is_hard = hn::Or(hn::Lt(largest, least_sum), hn::Lt(low, least_height));
+    hard = hn::Or(hard, hn::And(hn::Gt(low, zero), is_hard));
     const auto length = hn::Sqrt(hn::IfThenElse(above, length2, one));
     const auto inverse = hn::Div(one, length);
     const auto x = hn::Min(hn::Mul(half, length), one);
@@ -73,14 +79,15 @@ void prepare(const BatchPlan<T>& plan, const DirectionArrays<T>& in, Block<T>& b
     const auto normal = hn::Mul(h_z, inverse);
     auto factor = normal;
     if (plan.microfacet && !plan.shadowing) {
-      factor = hn::Mul(hn::Div(factor, low), hn::Div(hn::Set(d, T(0.25)), high));
+      factor = hn::Mul(hn::Div(factor, hn::IfThenElse(above, low, one)),
+                       hn::Div(hn::Set(d, T(0.25)), hn::IfThenElse(above, high, one)));
     } else if (plan.microfacet) {
       // min(1 / (2 low), h_n / x) / (2 high), model.md section 7; h_n / x = 2 h_z / length^2.
       const auto shadowed = hn::Mul(hn::Add(normal, normal), inverse);
       factor = hn::Mul(hn::Mul(factor, hn::Min(half, hn::Mul(shadowed, low))),
                        hn::Div(half, hn::Max(hn::Mul(low, high), least)));
     } else {
-      factor = hn::Div(factor, wi_z);
+      factor = hn::Div(factor, hn::IfThenElse(above, wi_z, one));
     }
     hn::Store(hn::Mul(weft, weft), d, block.weft2 + p);
     hn::Store(hn::Mul(warp, warp), d, block.warp2 + p);
@@ -108,6 +115,7 @@ void prepare(const BatchPlan<T>& plan, const DirectionArrays<T>& in, Block<T>& b
   if constexpr (sizeof(T) != sizeof(float)) {
     for (hwy::MakeUnsigned<T>& row : block.row) row *= plan.row_size;
   }
+  return !hn::AllFalse(d, hard);
 }
 
 /// The size of a lane's solid in the direction of the half vector: densities are 1 over it. kMean:
@@ -392,16 +400,17 @@ class Window {
 };
 
 template <class T>
-void run(const BatchPlan<T>& plan, const DirectionArrays<T>& in, T* const* values) {
+bool run(const BatchPlan<T>& plan, const DirectionArrays<T>& in, T* const* values) {
   if (plan.kind == BatchSum::kNone) {
     fill_constants(plan, in, values);
-    return;
+    return false;
   }
+  bool hard = false;
   Block<T> block{};
   Window<T> window;
   for (std::size_t first = 0; first < in.count; first += kBlock) {
     const DirectionArrays<T> now = window.at(in, first);
-    prepare(plan, now, block);
+    hard |= prepare(plan, now, block);
     auto output = plan.outputs.begin();
     const auto write = [&](const T* sum) {
       finish(block, sum, output->constant, now.count, values[output->channel] + first);
@@ -416,15 +425,16 @@ void run(const BatchPlan<T>& plan, const DirectionArrays<T>& in, T* const* value
       sum += count;
     }
   }
+  return hard;
 }
 
-void run_float(const BatchPlan<float>& plan, const DirectionArrays<float>& in,
+bool run_float(const BatchPlan<float>& plan, const DirectionArrays<float>& in,
                float* const* values) {
-  run(plan, in, values);
+  return run(plan, in, values);
 }
-void run_double(const BatchPlan<double>& plan, const DirectionArrays<double>& in,
+bool run_double(const BatchPlan<double>& plan, const DirectionArrays<double>& in,
                 double* const* values) {
-  run(plan, in, values);
+  return run(plan, in, values);
 }
 
 }  // namespace

@@ -28,11 +28,20 @@ struct BatchPlan {
   std::span<const BatchOutput<T>> outputs;  ///< by sum
 };
 
-/// The kernels for one kind of vector registers.
+/// Hard pairs are those above the horizon of which every component of wi + wo is below kLeastSum, or
+/// a z below kLeastHeight. Weights of a table are not good to their last digits there
+/// (kLeastCosine), and products of three cosines are too small for T.
+template <class T>
+inline constexpr T kLeastSum = T(2 * kLeastCosine);
+template <class T>
+inline constexpr T kLeastHeight = sizeof(T) == sizeof(float) ? T(0x1p-40) : T(0x1p-300);
+
+/// The kernels for one kind of vector registers. They return whether there was a hard pair, whose
+/// values are for the plain formula to set right.
 struct BatchTarget {
   const char* name;
-  void (*run_float)(const BatchPlan<float>&, const DirectionArrays<float>&, float* const* values);
-  void (*run_double)(const BatchPlan<double>&, const DirectionArrays<double>&,
+  bool (*run_float)(const BatchPlan<float>&, const DirectionArrays<float>&, float* const* values);
+  bool (*run_double)(const BatchPlan<double>&, const DirectionArrays<double>&,
                      double* const* values);
 };
 

@@ -17,16 +17,6 @@ double narrowest_axis(const ClothModel<double>& model) {
   return narrowest;
 }
 
-double channel_value(const Components& f, const Channel& channel) {
-  switch (channel.part) {
-    case Part::kSpecular: return f.specular[channel.colour];
-    case Part::kInternal: return f.internal[channel.colour];
-    case Part::kDiffuse: return f.diffuse[channel.colour];
-    case Part::kTotal: break;
-  }
-  return f.total(channel.colour);
-}
-
 ChannelSums::ChannelSums(const ClothModel<double>& model, std::size_t count)
     : count_(count), specular_(count), internal_(count * model.channel_count()) {
   for (std::size_t c = 0; c < model.channel_count(); ++c) diffuse_.push_back(model.diffuse(c));

@@ -35,7 +35,16 @@ double narrowest_axis(const ClothModel<double>& model);
 bool floats_do(const ClothModel<double>& model);
 
 /// The value of a channel.
-double channel_value(const Components& f, const Channel& channel);
+template <class T>
+T channel_value(const BasicComponents<T>& f, const Channel& channel) {
+  switch (channel.part) {
+    case Part::kSpecular: return f.specular[channel.colour];
+    case Part::kInternal: return f.internal[channel.colour];
+    case Part::kDiffuse: return f.diffuse[channel.colour];
+    case Part::kTotal: break;
+  }
+  return f.total(channel.colour);
+}
 
 /// The sums over lobes and the diffuse term for one half vector, ready for the channels of a table:
 /// f = factor * sums(channel)[k] + diffuse(channel).

@@ -110,7 +110,7 @@ class Measure {
           off += (approximate[i] - exact[i]) * density[l];
           sum += reference[i] * density[l];
         }
-        if (off != 0) largest = std::max(largest, std::abs(off / sum));
+        if (off != 0) largest = std::max(largest, sum != 0 ? std::abs(off / sum) : HUGE_VAL);
       }
     }
     return largest;

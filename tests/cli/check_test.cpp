@@ -125,10 +125,27 @@ TEST_CASE("check finds more light out than in") {
   CHECK_THAT(report, ContainsSubstring(" is above 1.01\n"));
 }
 
+TEST_CASE(
+    "check holds a material's evaluations to extended precision where numbers get difficult") {
+  const std::string silk = preset("silk").string();
+  const std::string text = output_of({"check", silk});
+  CHECK_THAT(text, ContainsSubstring("hard pairs of directions, against extended precision"));
+  const json told = json_of({"check", silk});
+  CHECK(told["evaluations"].size() == 4);
+  for (const json& evaluation : told["evaluations"]) {
+    CAPTURE(evaluation.dump());
+    CHECK(evaluation["worst_share"] > 0);
+    CHECK(evaluation["worst_share"] <= 1);
+    CHECK(evaluation["values"] > 400);
+    CHECK_THAT(text, ContainsSubstring(evaluation["evaluation"].get<std::string>()));
+  }
+}
+
 TEST_CASE("check refuses what it cannot read") {
   const TemporaryFolder folder;
   CHECK(not_a_refusal(run_program({"check", (folder / "none.exr").string()}), 2) == "");
-  CHECK(not_a_refusal(run_program({"check", preset("silk").string()}), 2) == "");
+  write_file(folder / "no.json", "{}");
+  CHECK(not_a_refusal(run_program({"check", (folder / "no.json").string()}), 2) == "");
   CHECK(not_a_refusal(run_program({"check"}), 2) == "");
   CHECK(not_a_refusal(run_program({"check", "a.exr", "b.exr"}), 2) == "");
   CHECK(not_a_refusal(run_program({"check", "a.exr", "--threads", "0"}), 2) == "");
