@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <iomanip>
 #include <iostream>
+#include <sstream>
 
 #include "tabulate/batch.h"
 #include "tabulate/precision_check.h"
@@ -11,6 +13,7 @@
 #include "tests/hard_cases/trapped.h"
 #include "tests/reference/reference_model.h"
 #include "tests/reference/worst_case.h"
+#include "tests/support/temporary_folder.h"
 
 namespace clothbrdf::test {
 namespace {
@@ -32,10 +35,49 @@ void print_figure(const PrecisionFigure& f) {
   std::cout << '\n';
 }
 
+/// The worst of all conventions and path sets, a row for each material.
+std::string row_of(const std::string& name, const std::vector<PrecisionFigure>& worst) {
+  std::ostringstream row;
+  row << "| " << name << std::setprecision(2);
+  for (const PrecisionFigure& f : worst) {
+    row << " | " << f.worst << " (" << std::ceil(100 * f.worst_share) << " %)";
+  }
+  row << " |\n";
+  return row.str();
+}
+
+/// docs/accuracy.md and the place of the table in it: after its head, up to an empty line.
+struct MeasuredTable {
+  std::filesystem::path file = CLOTHBRDF_SOURCE_DIR "/docs/accuracy.md";
+  std::string text = read_file(file);
+  std::size_t begin = 0;
+  std::size_t end = 0;
+
+  MeasuredTable() {
+    const std::string head = "| material | double |";
+    const std::size_t at = text.find(head);
+    REQUIRE(at != std::string::npos);
+    begin = text.find('\n', text.find('\n', at) + 1) + 1;
+    end = text.find("\n\n", begin - 1) + 1;
+  }
+};
+
+/// The first column.
+std::vector<std::string> names_of(const std::string& rows) {
+  std::vector<std::string> names;
+  std::istringstream lines(rows);
+  for (std::string line; std::getline(lines, line);) {
+    names.push_back(line.substr(2, line.find(" |", 2) - 2));
+  }
+  return names;
+}
+
 }  // namespace
 
 TEST_CASE("every hard material keeps every promise at the hard pairs, in double and in float") {
+  std::string rows;
   for (const HardMaterial& hard : catalogue()) {
+    std::vector<PrecisionFigure> worst;
     for (const Reflectance reflectance : {Reflectance::kMicrofacet, Reflectance::kPaper}) {
       for (const Paths paths : {Paths::kAll, Paths::kSingle}) {
         Material material = hard.material;
@@ -44,14 +86,28 @@ TEST_CASE("every hard material keeps every promise at the hard pairs, in double 
         std::cout << hard.name << (reflectance == Reflectance::kPaper ? ", paper" : "")
                   << (paths == Paths::kSingle ? ", single" : "") << '\n';
         const Trapped trapped;
-        for (const PrecisionFigure& f : check_precision(material, hard_pairs(material), 1)) {
+        const std::vector<PrecisionFigure> figures =
+            check_precision(material, hard_pairs(material), 1);
+        if (worst.empty()) worst = figures;
+        for (std::size_t k = 0; k < figures.size(); ++k) {
+          const PrecisionFigure& f = figures[k];
           print_figure(f);
           INFO(hard.name << ", " << f.evaluation);
           CHECK(f.worst_share <= 1);
           CHECK(f.compared > 0);
+          worst[k].worst = std::max(worst[k].worst, f.worst);
+          worst[k].worst_share = std::max(worst[k].worst_share, f.worst_share);
         }
       }
     }
+    rows += row_of(hard.name, worst);
+  }
+  // CLOTHBRDF_WRITE_REFERENCES=1 writes what was measured into docs/accuracy.md.
+  const MeasuredTable table;
+  if (std::getenv("CLOTHBRDF_WRITE_REFERENCES") != nullptr) {
+    write_file(table.file, table.text.substr(0, table.begin) + rows + table.text.substr(table.end));
+  } else {
+    CHECK(names_of(table.text.substr(table.begin, table.end - table.begin)) == names_of(rows));
   }
 }
 

@@ -68,10 +68,15 @@ inline std::vector<HardMaterial> hard_materials() {
   add("warp alone", [](Material& m) { m.warp_fraction = 1; });
   add("weft alone", [](Material& m) { m.warp_fraction = 0; });
   add("equal yarns", [](Material& m) { m.weft = m.warp; });
-  for (const double turn : {1e300, -1e22, 1e-300, -0.0, 720.0, -359.99999999999994}) {
-    add("rotation " + std::to_string(turn).substr(0, 8),
-        [=](Material& m) { m.rotation_deg = turn; });
-  }
+  const auto add_rotation = [&](const std::string& name, double turn) {
+    add("rotation " + name, [=](Material& m) { m.rotation_deg = turn; });
+  };
+  add_rotation("1e300", 1e300);
+  add_rotation("-1e22", -1e22);
+  add_rotation("1e-300", 1e-300);
+  add_rotation("-0", -0.0);
+  add_rotation("720", 720);
+  add_rotation("a bit short of -360", -359.99999999999994);
   add_yarns("slow path sums", [](Yarn& y) {
     y.layers = 64;
     y.absorption = {0, 0, 1e-9};
