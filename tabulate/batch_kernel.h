@@ -28,8 +28,8 @@ struct BatchPlan {
   std::span<const BatchOutput<T>> outputs;  ///< by sum
 };
 
-/// Hard pairs are those above the horizon of which every component of wi + wo is below kLeastSum, or
-/// a z below kLeastHeight. Weights of a table are not good to their last digits there
+/// Hard pairs are those above the horizon of which every component of wi + wo is below kLeastSum,
+/// or a z below kLeastHeight. Weights of a table are not good to their last digits there
 /// (kLeastCosine), and products of three cosines are too small for T.
 template <class T>
 inline constexpr T kLeastSum = T(2 * kLeastCosine);
