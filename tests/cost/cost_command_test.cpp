@@ -12,6 +12,7 @@ namespace {
 using nlohmann::json;
 
 constexpr double kLongest = 180;  // seconds, on two cores
+constexpr double kNear = 2;       // in time
 
 // What two runs must say alike, by name; nothing where a setting has none.
 std::map<std::string, std::vector<double>> errors_of(const json& report) {
@@ -35,7 +36,9 @@ TEST_CASE("cost measures what accuracy costs, and the same errors each time") {
   CHECK(taken.count() <= kLongest);
   CHECK(report["settings"].size() >= 40);
 
-  // Settings that write a file, on fronts that span decades of error.
+  // Settings that write a file, on fronts that span decades of error. Small files all take about as
+  // long, so that chance decides which of them are on the front: those that are within a factor of
+  // two of it in time count.
   for (const auto& [front, decades] : std::map<std::string, double>{{"3-D", 3}, {"4-D", 2}}) {
     double least = INFINITY;
     double most = 0;
@@ -46,18 +49,22 @@ TEST_CASE("cost measures what accuracy costs, and the same errors each time") {
       CHECK(s["seconds"]["lowest"] <= s["seconds"]["median"]);
       CHECK(s["seconds"]["median"] <= s["seconds"]["highest"]);
       CHECK(s.contains("isotropy_loss") == (front == "3-D"));
-      // None of the front is both faster and as accurate.
+      bool near = true;
       for (const json& other : report["settings"]) {
-        if (!s["pareto"].get<bool>() || other["front"] != front) continue;
-        CHECK_FALSE((other["seconds"]["median"] < s["seconds"]["median"] &&
-                     other["error"]["rms"] < s["error"]["rms"]));
+        if (other["front"] != front || other["error"]["rms"] >= s["error"]["rms"]) continue;
+        const double slower =
+            s["seconds"]["median"].get<double>() / other["seconds"]["median"].get<double>();
+        // None of the front is both faster and as accurate.
+        if (s["pareto"].get<bool>()) CHECK(slower <= 1);
+        near = near && slower <= kNear;
       }
-      if (!s["pareto"].get<bool>()) continue;
+      if (!near) continue;
       least = std::min(least, s["error"]["rms"].get<double>());
       most = std::max(most, s["error"]["rms"].get<double>());
       ++points;
     }
-    WARN(front << ": " << points << " settings on the front, rms from " << least << " to " << most);
+    WARN(front << ": " << points << " settings on the front or near it, rms from " << least
+               << " to " << most);
     CHECK(std::log10(most / least) >= decades);
   }
 
