@@ -56,6 +56,7 @@ void measure_material(const CostOptions& options) {
   const int threads = threads_of(options.threads);
   check_outputs(options);
   const Material material = read_material(options.material);
+  ProgressBar bar;
   // All opened before any work, so that a wrong folder costs nothing.
   std::vector<AtomicFile> files;
   files.reserve(options.outputs.size());
@@ -66,7 +67,6 @@ void measure_material(const CostOptions& options) {
   }
   if (pictures) require_gnuplot();
 
-  ProgressBar bar;
   const CostReport report =
       measure_cost(material, std::filesystem::temp_directory_path(), {threads, &bar.progress()});
   bar.clear();

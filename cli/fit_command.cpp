@@ -121,10 +121,9 @@ void fit(const FitCommandOptions& options) {
   check_outputs(options);
   const Table table = read_totals(options.table);
   const FitOptions fit_options = read_fit_options(options.flags, table.spec().channels);
-  FitFiles files = open_files(options);
-
   ProgressBar bar;
   const Workers workers{threads, &bar.progress()};
+  FitFiles files = open_files(options);
   FitReport report = fit_table(table, fit_options, workers);
   report.table = options.table;
   add_wavelengths(table.spec().channels, report);

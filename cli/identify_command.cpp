@@ -179,12 +179,11 @@ void identify_file(const IdentifyCommandOptions& options) {
     subject = material_subject(options);
     subject.noise_source = options.flags.noise ? "as given" : "the default";
   }
+  ProgressBar bar;
+  const Workers workers{threads, &bar.progress()};
   std::vector<AtomicFile> files;
   files.reserve(options.outputs.size());
   for (const std::string& file : options.outputs) files.emplace_back(file);
-
-  ProgressBar bar;
-  const Workers workers{threads, &bar.progress()};
   if (table) subject = table_subject(options, *table, fit_options, workers);
   subject.options.refits = refits;
 

@@ -7,6 +7,7 @@
 
 #include "cli/commands.h"
 #include "cli/options.h"
+#include "cli/progress_bar.h"
 #include "formats/colour.h"
 #include "formats/material_json.h"
 #include "formats/presets.h"
@@ -100,6 +101,7 @@ void dye(Material& material, const YarnColours& colours) {
 
 void write_material(const Material& material, const std::filesystem::path& path) {
   const std::string text = material_to_json(material);
+  const ProgressBar bar;  // a signal waits for the whole file
   AtomicFile file(path);
   write_text(text, file);
   file.commit();

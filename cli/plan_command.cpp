@@ -30,12 +30,11 @@ void plan(const PlanOptions& options) {
   }
   const Scene scene = read_scene(options.scene);
   check_scene(scene, options.scene);
+  ProgressBar bar;
+  const Workers workers(threads, &bar.progress());
   // Opened before any work, so that a wrong folder costs nothing.
   std::optional<AtomicFile> file;
   if (options.output) file.emplace(*options.output);
-
-  ProgressBar bar;
-  const Workers workers(threads, &bar.progress());
   const Plan plan = make_plan(scene, workers);
   const std::string json = plan_to_json(plan);
   if (file) {

@@ -74,6 +74,7 @@ ProgressBar::ProgressBar() : cleared_(std::chrono::steady_clock::now()) {
   cancelled_by_signal = &progress_;
   old_interrupt_ = install_handler(SIGINT);
   old_terminate_ = install_handler(SIGTERM);
+  old_hang_up_ = install_handler(SIGHUP);
   if (!can_draw()) return;
   try {
     watcher_ = std::thread([this] { watch(); });
@@ -93,6 +94,7 @@ ProgressBar::~ProgressBar() {
   }
   ::sigaction(SIGINT, &old_interrupt_, nullptr);
   ::sigaction(SIGTERM, &old_terminate_, nullptr);
+  ::sigaction(SIGHUP, &old_hang_up_, nullptr);
   while (cancelled_by_signal.exchange(nullptr) == nullptr) {  // a handler is about to give it back
   }
 }

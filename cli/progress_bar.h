@@ -10,11 +10,12 @@
 
 namespace clothbrdf {
 
-/// Shows a Progress to whoever sits before it, and lets them stop the work. For its lifetime SIGINT
-/// and SIGTERM cancel the progress, unless they were ignored before; a second signal ends the
-/// program at once. (After a first one main() ends it by that signal.) Where standard error is a
-/// terminal, one line there tells from the first second on how far the work is; elsewhere there is
-/// no output and no thread. One at a time.
+/// Shows a Progress to whoever sits before it, and lets them stop the work. For its lifetime
+/// SIGINT, SIGTERM and SIGHUP cancel the progress, unless they were ignored before; a second signal
+/// ends the program at once. (After a first one main() ends it by that signal.) So an AtomicFile
+/// that is opened after it is always destroyed, and leaves nothing hidden. Where standard error is
+/// a terminal, one line there tells from the first second on how far the work is; elsewhere there
+/// is no output and no thread. One at a time.
 class ProgressBar {
  public:
   ProgressBar();
@@ -37,6 +38,7 @@ class ProgressBar {
   Progress progress_;
   struct sigaction old_interrupt_ {};
   struct sigaction old_terminate_ {};
+  struct sigaction old_hang_up_ {};
 
   std::mutex mutex_;  // guards what follows, and the terminal's line
   std::condition_variable finished_changed_;

@@ -130,7 +130,7 @@ CostReport measure_cost(const Material& material, const std::filesystem::path& s
   report.repeats = kRepeats;
   report.seed = kCostSeed;
   FileOrder order{material, {}, false, find_format("cost.exr"), {}, false, {}};
-  order.name = (scratch_folder / "clothbrdf_cost").string();
+  order.name = (scratch_folder / ("clothbrdf_cost_" + unguessable_digits())).string();
   const Workers quiet = uncounted(workers);
 
   const PairModel cloth(order, false, quiet);

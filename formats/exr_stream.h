@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <exception>
 #include <span>
 #include <vector>
 
@@ -36,10 +37,10 @@ class AtomicOStream final : public Imf::OStream {
     start_ = position;
   }
 
-  /// The last call. Throws WorkError, also where an earlier write failed: OpenEXR's destructor
-  /// keeps quiet about that.
+  /// The last call. Throws WorkError, also that of an earlier write: OpenEXR's destructor keeps
+  /// quiet about it.
   void finish() {
-    if (failed_) throw WorkError(file_.name().string() + ": cannot write: an earlier write failed");
+    if (failure_) std::rethrow_exception(failure_);
     flush();
   }
 
@@ -49,9 +50,12 @@ class AtomicOStream final : public Imf::OStream {
     buffer_.clear();
   }
   void put(std::span<const std::byte> bytes) {
-    failed_ = true;
-    file_.write_at(start_, bytes);
-    failed_ = false;
+    try {
+      file_.write_at(start_, bytes);
+    } catch (const WorkError&) {
+      failure_ = std::current_exception();
+      throw;
+    }
     start_ += bytes.size();
   }
 
@@ -59,7 +63,7 @@ class AtomicOStream final : public Imf::OStream {
 
   AtomicFile& file_;
   std::uint64_t start_ = 0;  // of the buffer, in the file
-  bool failed_ = false;
+  std::exception_ptr failure_;
   std::vector<std::byte> buffer_;
 };
 

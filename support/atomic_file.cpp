@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <random>
 #include <string>
 #include <utility>
 
@@ -25,14 +26,35 @@ std::filesystem::path folder_of(const std::filesystem::path& file) {
   return file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
 }
 
-std::filesystem::path hidden_name(const std::filesystem::path& target, int attempt) {
-  return folder_of(target) / ("." + target.filename().string() + "." + std::to_string(::getpid()) +
-                              "." + std::to_string(attempt) + ".part");
+// Short, so that a target's name may be as long as the system allows.
+std::filesystem::path hidden_name(const std::filesystem::path& target) {
+  return folder_of(target) / (".clothbrdf-" + unguessable_digits() + ".part");
+}
+
+// What a signal interrupts is begun again: some network file systems do not do so themselves.
+template <class Call>
+int uninterrupted(const Call& call) {
+  int result = 0;
+  do {
+    result = call();
+  } while (result < 0 && errno == EINTR);
+  return result;
 }
 
 }  // namespace
 
+std::string unguessable_digits() {
+  std::random_device random;
+  char digits[17];
+  std::snprintf(digits, sizeof digits, "%08x%08x", random(), random());
+  return digits;
+}
+
 AtomicFile::AtomicFile(const std::filesystem::path& target) : name_(target), target_(target) {
+  struct stat status {};
+  const bool replaces = ::stat(target_.c_str(), &status) == 0;
+  // The system may forbid to follow a link that somebody else put into a shared folder.
+  if (!replaces && errno != ENOENT) fail("cannot write", errno);
   // Not by canonical(), which stays at a link that leads to no file yet.
   std::error_code error;
   for (int links = 0; std::filesystem::is_symlink(target_, error); ++links) {
@@ -40,17 +62,17 @@ AtomicFile::AtomicFile(const std::filesystem::path& target) : name_(target), tar
     target_ = folder_of(target_) / std::filesystem::read_symlink(target_, error);
     if (error) fail("cannot follow the link", error.value());
   }
-  struct stat status {};
-  const bool replaces = ::stat(target_.c_str(), &status) == 0;
   if (replaces) {
     if (S_ISDIR(status.st_mode)) fail("cannot write", EISDIR);
     if (!S_ISREG(status.st_mode))
       throw WorkError(name_.string() + ": cannot write: not a regular file");
   }
-  open_anonymous();
-  if (fd_ < 0) open_hidden();
-  // A file that others must not read stays so; not where the system refuses.
-  if (replaces) static_cast<void>(::fchmod(fd_, status.st_mode & 0777));
+  // A file that others must not read stays so, from the start.
+  const mode_t mode = replaces ? status.st_mode & 0777 : kMode;
+  open_anonymous(mode);
+  if (fd_ < 0) open_hidden(mode);
+  // What the umask took away; not where the system refuses.
+  if (replaces) static_cast<void>(::fchmod(fd_, mode));
 }
 
 AtomicFile::AtomicFile(AtomicFile&& other) noexcept
@@ -69,30 +91,31 @@ void AtomicFile::fail(const char* what, int error) const {
   throw WorkError(name_.string() + ": " + what + ": " + std::strerror(error));
 }
 
-void AtomicFile::open_anonymous() {
+void AtomicFile::open_anonymous(mode_t mode) {
   // A file without a name gets one through /proc.
   if (::access("/proc/self/fd", X_OK) != 0) return;
-  fd_ = ::open(folder_of(target_).c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, kMode);
+  fd_ = uninterrupted(
+      [&] { return ::open(folder_of(target_).c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, mode); });
   const bool not_supported = errno == EOPNOTSUPP || errno == EISDIR || errno == EINVAL;
   if (fd_ < 0 && !not_supported) fail("cannot write", errno);
 }
 
-void AtomicFile::open_hidden() {
-  for (int attempt = 0; fd_ < 0; ++attempt) {
-    hidden_ = hidden_name(target_, attempt);
-    fd_ = ::open(hidden_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kMode);
-    if (fd_ < 0 && errno != EEXIST) {
-      const int error = errno;
-      hidden_.clear();
-      fail("cannot write", error);
-    }
-  }
+void AtomicFile::open_hidden(mode_t mode) {
+  std::filesystem::path hidden;
+  do {
+    hidden = hidden_name(target_);
+    // O_EXCL: never through a link, never into a file that is there already.
+    fd_ = uninterrupted(
+        [&] { return ::open(hidden.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode); });
+  } while (fd_ < 0 && errno == EEXIST);
+  if (fd_ < 0) fail("cannot write", errno);
+  hidden_ = hidden;
 }
 
 void AtomicFile::reserve(std::uint64_t bytes) {
 #ifdef __linux__
-  if (::fallocate(fd_, 0, 0, static_cast<off_t>(bytes)) != 0 &&
-      (errno == ENOSPC || errno == EFBIG || errno == EDQUOT)) {
+  const auto allocate = [&] { return ::fallocate(fd_, 0, 0, static_cast<off_t>(bytes)); };
+  if (uninterrupted(allocate) != 0 && (errno == ENOSPC || errno == EFBIG || errno == EDQUOT)) {
     fail("cannot write", errno);
   }
 #else
@@ -145,11 +168,12 @@ void AtomicFile::write_at(std::uint64_t offset, std::span<const std::byte> bytes
 void AtomicFile::link_to_target() {
   const std::string self = "/proc/self/fd/" + std::to_string(fd_);
   const auto link = [&](const std::filesystem::path& to) {
-    return ::linkat(AT_FDCWD, self.c_str(), AT_FDCWD, to.c_str(), AT_SYMLINK_FOLLOW);
+    return uninterrupted(
+        [&] { return ::linkat(AT_FDCWD, self.c_str(), AT_FDCWD, to.c_str(), AT_SYMLINK_FOLLOW); });
   };
   if (link(target_) == 0) return;
-  for (int attempt = 0; errno == EEXIST; ++attempt) {
-    const std::filesystem::path candidate = hidden_name(target_, attempt);
+  while (errno == EEXIST) {
+    const std::filesystem::path candidate = hidden_name(target_);
     if (link(candidate) == 0) {
       hidden_ = candidate;
       return;
@@ -163,11 +187,15 @@ std::filesystem::path AtomicFile::readable() const {
 }
 
 void AtomicFile::commit() {
+  // On a network file system closing tells of bytes that never arrived: a second descriptor is
+  // closed before the file has its name. Linux closes it even where a signal interrupts that.
+  const int copy = ::fcntl(fd_, F_DUPFD_CLOEXEC, 0);
+  if (copy < 0 || (::close(copy) != 0 && errno != EINTR)) fail("cannot write", errno);
   if (hidden_.empty()) link_to_target();
-  // Before the rename: on a network file system closing tells of bytes that never arrived.
-  if (::close(std::exchange(fd_, -1)) != 0) fail("cannot write", errno);
+  ::close(std::exchange(fd_, -1));
   if (hidden_.empty()) return;
-  if (::rename(hidden_.c_str(), target_.c_str()) != 0) fail("cannot write", errno);
+  const auto rename = [&] { return ::rename(hidden_.c_str(), target_.c_str()); };
+  if (uninterrupted(rename) != 0) fail("cannot write", errno);
   hidden_.clear();
 }
 

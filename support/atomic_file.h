@@ -1,21 +1,29 @@
 #pragma once
 
+#include <sys/types.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <span>
+#include <string>
 
 namespace clothbrdf {
+
+/// 16 hexadecimal digits, for names that nobody can expect in a shared folder.
+std::string unguessable_digits();
 
 /// A file that appears under its name only when it is whole; an old file of that name stays as it
 /// was until then, and passes on its permissions. The bytes sit in a file without a name in the
 /// same folder, which goes with the process, however that ends. Where the file system knows no such
-/// files, they sit in a hidden one beside it, which the destructor removes, but not a process that
-/// is killed. There is no fsync: it is not safe against power loss. All members throw WorkError, in
-/// one line that starts with the file's name.
+/// files, they sit in a hidden one beside it, .clothbrdf-DIGITS.part with digits that nobody can
+/// guess, which the destructor removes, but not a process that is killed; elsewhere that name is
+/// there only within a commit() that replaces an old file. There is no fsync: it is not safe
+/// against power loss. All members throw WorkError, in one line that starts with the file's name.
 class AtomicFile {
  public:
-  /// The target must be a regular file or not exist; a symbolic link is followed.
+  /// The target must be a regular file or not exist; a symbolic link is followed, also to where
+  /// there is no file yet, and stays, unless the system forbids to follow it.
   explicit AtomicFile(const std::filesystem::path& target);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
@@ -44,8 +52,8 @@ class AtomicFile {
 
  private:
   [[noreturn]] void fail(const char* what, int error) const;
-  void open_anonymous();
-  void open_hidden();
+  void open_anonymous(mode_t mode);
+  void open_hidden(mode_t mode);
   void link_to_target();
 
   std::filesystem::path name_;

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <csignal>
+#include <cstdlib>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -82,6 +83,7 @@ struct RunOptions {
   bool output_closed = false;                   ///< no standard output at all
   std::optional<int> terminal = {};             ///< for standard error, instead of keeping it
   std::optional<int> ignored_signal = {};       ///< as nohup does
+  std::vector<std::string> environment = {};    ///< NAME=value, more of it
 };
 
 /// Starts the program with these as its standard streams; a program that hangs is ended.
@@ -105,6 +107,8 @@ inline pid_t start_program(const Arguments& arguments, int in, int out, int err,
     if (options.output_closed) ::close(STDOUT_FILENO);
     std::signal(SIGPIPE, SIG_DFL);
     if (options.ignored_signal) std::signal(*options.ignored_signal, SIG_IGN);
+    for (const std::string& variable : options.environment)
+      ::putenv(const_cast<char*>(variable.c_str()));
     ::alarm(kLongestRunSeconds);
     ::execv(argv.front(), argv.data());
     ::_exit(127);
