@@ -1,7 +1,5 @@
 #pragma once
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <span>
@@ -32,7 +30,7 @@ class Evaluation {
     std::vector<double> all(count_ * channels_);
     const std::size_t blocks = (count_ + kBlock - 1) / kBlock;
     with_threads(workers.threads, [&] {
-      tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t block) {
+      run_parallel(blocks, workers, [&](std::size_t block) {
         workers.check();
         const std::size_t first = block * kBlock;
         const std::vector<T> values = values_of(evaluator, first);

@@ -8,7 +8,6 @@
 #include "fit/doubts.h"
 #include "fit/equivalents.h"
 #include "fit/noisy_values.h"
-#include "fit/parallel.h"
 #include "fit/profile.h"
 #include "fit/remedies.h"
 #include "fit/settle.h"

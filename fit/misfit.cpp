@@ -8,8 +8,8 @@
 #include <cmath>
 #include <optional>
 
-#include "fit/parallel.h"
 #include "model/reflectance.h"
+#include "support/threads.h"
 #include "tabulate/vectorise.h"
 
 namespace clothbrdf {

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "fit/incidence_nodes.h"
-#include "fit/parallel.h"
 #include "model/layers.h"
+#include "support/threads.h"
 #include "tabulate/vectorise.h"
 
 namespace clothbrdf {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "fit/misfit.h"
-#include "fit/parallel.h"
+#include "support/threads.h"
 
 namespace clothbrdf {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "fit/parallel.h"
+#include "support/threads.h"
 #include "tabulate/dot.h"
 #include "tabulate/vectorise.h"
 

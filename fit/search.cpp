@@ -1,7 +1,5 @@
 #include "fit/search.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -119,7 +117,7 @@ class Searcher {
         if (distance(pair) == ring) pairs.push_back(pair);
       }
       std::vector<Solution> found(pairs.size());
-      tbb::parallel_for(std::size_t{0}, pairs.size(), [&](std::size_t k) {
+      run_parallel(pairs.size(), workers_, [&](std::size_t k) {
         found[k] = from_neighbours(table, pairs[k].first, pairs[k].second);
       });
       for (std::size_t k = 0; k < pairs.size(); ++k) {
@@ -256,13 +254,13 @@ Search search(const Misfit& misfit, const ParameterSet& set, const FitOptions& o
   std::vector<Solution> ends;
   for (std::size_t batch = 0; batch < kMostBatches; ++batch) {
     std::vector<Solution> found(starts);
-    tbb::parallel_for(std::size_t{0}, starts, [&](std::size_t k) {
+    run_parallel(starts, workers, [&](std::size_t k) {
       found[k] = run_start(batch * starts + k);
       if (batch == 0) workers.advance(1);
     });
     std::stable_sort(found.begin(), found.end(),
                      [](const Solution& a, const Solution& b) { return a.cost < b.cost; });
-    tbb::parallel_for(std::size_t{0}, std::min(starts, kPromising), [&](std::size_t k) {
+    run_parallel(std::min(starts, kPromising), workers, [&](std::size_t k) {
       found[k] = searcher.descend(searcher.go_on(found[k]), result.layers);
     });
     ends.insert(ends.end(), found.begin(), found.end());

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fit/parallel.h"
+#include "support/threads.h"
 
 namespace clothbrdf {
 namespace {

@@ -1,7 +1,5 @@
 #include "formats/klems.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -73,7 +71,7 @@ std::vector<Rgb> patch_means(const Producer& producer, const Workers& workers) {
   for (std::size_t k = 0; k < basis.size(); ++k) patches.emplace_back(basis.patch(k));
   std::vector<Rgb> means(patches.size() * patches.size());
   with_threads(workers.threads, [&] {
-    tbb::parallel_for(std::size_t{0}, patches.size(), [&](std::size_t light) {
+    run_parallel(patches.size(), workers, [&](std::size_t light) {
       fill_light_patch(producer, workers, patches, light,
                        std::span(means).subspan(light * patches.size(), patches.size()));
     });

@@ -1,7 +1,5 @@
 #include "formats/rgl_distribution.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -74,7 +72,7 @@ std::vector<float> ndf_table(const Producer& producer, std::span<const double> w
   };
   // An isotropic table has the same rows.
   const std::size_t rows = producer.spec().isotropic() ? 1 : kNdfSide;
-  with_threads(workers.threads, [&] { tbb::parallel_for(std::size_t{0}, rows, fill_row); });
+  with_threads(workers.threads, [&] { run_parallel(rows, workers, fill_row); });
   for (std::size_t row = rows; row < kNdfSide; ++row) {
     std::copy_n(ndf.begin(), kNdfSide, ndf.begin() + static_cast<std::ptrdiff_t>(row * kNdfSide));
   }

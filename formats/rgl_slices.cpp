@@ -1,7 +1,5 @@
 #include "formats/rgl_slices.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -167,7 +165,7 @@ RglColumn RglSlices::column(std::size_t phi) const {
                    std::vector<float>(s.theta * s.slice_cells()),
                    std::vector<float>(s.theta * s.channels * s.slice_cells())};
   with_threads(workers_.threads, [&] {
-    tbb::parallel_for(std::size_t{0}, s.theta, [&](std::size_t theta) {
+    run_parallel(s.theta, workers_, [&](std::size_t theta) {
       workers_.check();
       fill_slice(phi, theta, column);
     });

@@ -1,7 +1,5 @@
 #include "formats/tensor_tree.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -201,7 +199,8 @@ BoxTree BoxTree::build(const Producer& producer, const Workers& workers, const L
   std::size_t total = 0;
   for (std::size_t first = 0; first < kParts; first += kRound) {
     with_threads(workers.threads, [&] {
-      tbb::parallel_for(first, first + kRound, [&](std::size_t k) {
+      run_parallel(kRound, workers, [&](std::size_t n) {
+        const std::size_t k = first + n;
         const TreePlace place = TreePlace{}.child(k >> 8U).child(k >> 4U & 15U).child(k & 15U);
         Builder(producer, workers, rules, now).build(place, parts[k]);
         prune_boxes(parts[k], now.error);

@@ -1,7 +1,5 @@
 #include "preview/sheet.h"
 
-#include <tbb/parallel_for.h>
-
 #include <cmath>
 #include <numbers>
 #include <span>
@@ -49,7 +47,8 @@ Image render_sheet(const Shading& shading, const SheetView& view, const Workers&
   const double white = std::numbers::pi * std::exp2(view.exposure);
   Image image(view.size, view.size);
   with_threads(workers.threads, [&] {
-    tbb::parallel_for(0, view.size, [&](int row) {
+    run_parallel(static_cast<std::size_t>(view.size), workers, [&](std::size_t k) {
+      const int row = static_cast<int>(k);
       std::vector<Directions> directions;
       for (int column = 0; column < view.size; ++column) {
         const Slope slope =

@@ -1,7 +1,5 @@
 #include "scene/planner.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -142,7 +140,7 @@ class MaterialPlanner {
     estimates_.assign(all.size(), 0.0);
     if (!(budget_ > 0)) return;
     with_threads(workers_.threads, [&] {
-      tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t k) {
+      run_parallel(all.size(), workers_, [&](std::size_t k) {
         if (all[k]->changes) estimates_[k] = bound(model, *all[k]);
         workers_.advance(1);
       });
@@ -201,7 +199,7 @@ class MaterialPlanner {
     }
     std::vector<double> bounds(before.size());
     with_threads(workers_.threads, [&] {
-      tbb::parallel_for(std::size_t{0}, before.size(), [&](std::size_t k) {
+      run_parallel(before.size(), workers_, [&](std::size_t k) {
         bounds[k] = bound(ClothModel<double>(material_, before[k]), *choice.left_out[k]);
       });
     });
@@ -246,7 +244,7 @@ Plan make_plan(const Scene& scene, Workers workers) {
   Plan plan{scene.name, scene.tolerance, 0, 0, 0, {}, scene.reach()};
   std::vector<Brightest> found(scene.materials.size());
   with_threads(workers.threads, [&] {
-    tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t m) {
+    run_parallel(found.size(), workers, [&](std::size_t m) {
       found[m] = brightest(ClothModel<double>(scene.materials[m]),
                            LitBoxes(scene, scene.materials[m]), workers);
     });

@@ -1,7 +1,5 @@
 #include "table/albedo.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -166,7 +164,7 @@ std::vector<Albedo> albedo_by_theta(const Table& table, const Workers& workers) 
   }
   std::vector<Albedo> all(thetas.size() * of_theta);
   with_threads(workers.threads, [&] {
-    tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t k) {
+    run_parallel(all.size(), workers, [&](std::size_t k) {
       Albedo& albedo = all[k];
       albedo.theta_i_deg = thetas[k / of_theta];
       albedo.of_eye = k % roles == 1;

@@ -1,7 +1,5 @@
 #include "table/producer.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 #include <tbb/parallel_pipeline.h>
 
 #include <algorithm>
@@ -21,6 +19,7 @@ constexpr std::size_t kStepValues = 256;
 struct Block {
   std::size_t first_row = 0;
   std::vector<double> values;
+  Handover passed_on;
 };
 
 }  // namespace
@@ -29,14 +28,15 @@ void fill_all_pairs(const Producer& producer, Workers workers, std::span<const D
                     std::span<double> values) {
   constexpr std::size_t kPairsOfBlock = 4096;
   const std::size_t channels = producer.spec().channels.size();
-  const auto fill = [&](const tbb::blocked_range<std::size_t>& range) {
+  const auto fill = [&](std::size_t block) {
     workers.check();
-    producer.fill_pairs(pairs.subspan(range.begin(), range.size()),
-                        values.subspan(range.begin() * channels, range.size() * channels));
+    const std::size_t first = block * kPairsOfBlock;
+    const std::size_t count = std::min(kPairsOfBlock, pairs.size() - first);
+    producer.fill_pairs(pairs.subspan(first, count),
+                        values.subspan(first * channels, count * channels));
   };
-  with_threads(workers.threads, [&] {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pairs.size(), kPairsOfBlock), fill);
-  });
+  const std::size_t blocks = (pairs.size() + kPairsOfBlock - 1) / kPairsOfBlock;
+  with_threads(workers.threads, [&] { run_parallel(blocks, workers, fill); });
 }
 
 void stream_rows(const Producer& producer, Workers workers, const RowFunction& take,
@@ -55,19 +55,28 @@ void stream_rows(const Producer& producer, Workers workers, const RowFunction& t
   std::vector<Block> ring(tokens);
   std::size_t next_row = 0;
   std::size_t next_slot = 0;
+  static ParallelWork parallel;
+  static Handover counters;
   const auto next = [&](tbb::flow_control& control) -> Block* {
+    const ParallelWork::Piece piece(parallel);
+    counters.take();
     if (next_row >= rows) {
       control.stop();
       return nullptr;
     }
     Block& block = ring[next_slot];
     next_slot = (next_slot + 1) % tokens;
+    block.passed_on.take();
     block.first_row = next_row;
     block.values.resize(std::min(rows_per_block, rows - next_row) * spec.row_values());
     next_row += rows_per_block;
+    block.passed_on.give();
+    counters.give();
     return &block;
   };
   const auto compute = [&](Block* block) {
+    const ParallelWork::Piece piece(parallel);
+    block->passed_on.take();
     std::size_t row = block->first_row;
     for (std::span<double> left = block->values; !left.empty();) {
       const std::size_t count = std::min(rows_per_step, left.size() / spec.row_values());
@@ -77,9 +86,19 @@ void stream_rows(const Producer& producer, Workers workers, const RowFunction& t
       left = left.subspan(count * spec.row_values());
     }
     if (prepare) prepare(block->first_row, block->values);
+    block->passed_on.give();
     return block;
   };
-  const auto hand_over = [&](Block* block) { take(block->first_row, block->values); };
+  static Handover taken;
+  const auto hand_over = [&](Block* block) {
+    const ParallelWork::Piece piece(parallel);
+    taken.take();
+    block->passed_on.take();
+    take(block->first_row, block->values);
+    block->passed_on.give();
+    taken.give();
+  };
+  const ParallelWork::Caller caller(parallel);
   with_threads(workers.threads, [&] {
     tbb::parallel_pipeline(
         tokens, tbb::make_filter<void, Block*>(tbb::filter_mode::serial_in_order, next) &

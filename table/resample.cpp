@@ -1,7 +1,5 @@
 #include "table/resample.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -62,7 +60,7 @@ Table tabulated(const Table& source, const Samples& samples, const Workers& work
   std::vector<std::uint8_t> valid(spec.cell_count());
   if (workers.progress != nullptr) workers.progress->begin(what, spec.cell_count(), "cells");
   with_threads(workers.threads, [&] {
-    tbb::parallel_for(std::size_t{0}, spec.row_count(), [&](std::size_t row) {
+    run_parallel(spec.row_count(), workers, [&](std::size_t row) {
       const CellFunction function = make_function();
       std::vector<double> sample;
       for (std::size_t column = 0; column < columns; ++column) {

@@ -1,7 +1,5 @@
 #include "tabulate/path_matrix.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 
 #include "support/threads.h"
@@ -15,7 +13,7 @@ PathMatrix::PathMatrix(const ClothModel<double>& model, std::vector<double> cos_
   for (std::size_t y = 0; y < distinct_yarns(); ++y) lobe_count_ += model.yarns()[y].lobes.size();
   weights_.resize(cos_theta_d.size() * model.channel_count() * lobe_count_);
   with_threads(workers.threads, [&] {
-    tbb::parallel_for(std::size_t{0}, cos_theta_d.size(), [&](std::size_t k) {
+    run_parallel(cos_theta_d.size(), workers, [&](std::size_t k) {
       workers.check();
       fill_weights(k, cos_theta_d[k]);
     });

@@ -1,7 +1,5 @@
 #include "tabulate/precision_check.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -255,7 +253,7 @@ std::vector<PrecisionFigure> check_precision(const Material& material,
     workers.advance(1);
   };
   with_threads(workers.threads, [&] {
-    tbb::parallel_for(std::size_t{0}, pairs.size(), [&](std::size_t k) { check(pairs[k]); });
+    run_parallel(pairs.size(), workers, [&](std::size_t k) { check(pairs[k]); });
   });
   return {formula.figure(), vectors.figure(), double_batches.figure(), float_batches.figure()};
 }

@@ -1,7 +1,5 @@
 #include "tabulate/weight_table.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -26,7 +24,7 @@ class Octaves {
       : nodes_(nodes), row_size_(lanes.size() * lanes.channels().size()) {
     rows_.resize(kOctaves * nodes, Row(row_size_));
     with_threads(workers.threads, [&] {
-      tbb::parallel_for(std::size_t{0}, rows_.size(), [&](std::size_t k) {
+      run_parallel(rows_.size(), workers, [&](std::size_t k) {
         workers.check();
         const double y = place(static_cast<int>(k / nodes_), node(k % nodes_));
         lanes.weights(cosine(y), rows_[k]);
@@ -128,7 +126,7 @@ double octave_error(const Octaves& octaves, const LobeLanes& lanes, const Measur
   constexpr std::array<double, 2> kBetween = {0.013, 0.52};  // of an octave, between nodes
   std::vector<double> errors(kOctaves * kBetween.size());
   with_threads(workers.threads, [&] {
-    tbb::parallel_for(std::size_t{0}, errors.size(), [&](std::size_t k) {
+    run_parallel(errors.size(), workers, [&](std::size_t k) {
       workers.check();
       const double y =
           Octaves::place(static_cast<int>(k / kBetween.size()), kBetween[k % kBetween.size()]);
@@ -206,7 +204,7 @@ class Pieces {
             std::max(errors[piece], measure(y_at(t), evaluate(to, t), octaves.at(y_at(t))));
       }
     };
-    with_threads(workers.threads, [&] { tbb::parallel_for(std::size_t{0}, pieces, make); });
+    with_threads(workers.threads, [&] { run_parallel(pieces, workers, make); });
     error = *std::max_element(errors.begin(), errors.end());
   }
 

@@ -18,8 +18,8 @@ using Clock = std::chrono::steady_clock;
 const std::string kErase = "\r\x1b[K";
 
 // Some seconds of work in many cells, and in a single one.
-const Arguments kManyCells = {"--grid",       "inout:8x48x8x48", "--cells",
-                              "average:1e-2", "--threads",       "1"};
+const Arguments kManyCells = {"--grid", "inout:8x48x8x48", "--cells", "average:1e-2", "--threads",
+                              "1",      "--effects",       "specular"};
 const Arguments kSlowCell = {"--grid", "inout:1x1x1x1", "--cells", "average:1e-6", "--components"};
 // Far less than the slow cell takes, far more than ending takes.
 constexpr std::chrono::seconds kPromptly{20};

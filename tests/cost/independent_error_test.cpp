@@ -1,4 +1,3 @@
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -44,7 +43,7 @@ Uniform uniform_pairs(const Material& material, std::uint64_t seed) {
   const ClothModel<double> model(material, {});
   uniform.cloth.resize(3 * kPairs);
   with_threads(2, [&] {
-    tbb::parallel_for(std::size_t{0}, kPairs, [&](std::size_t k) {
+    run_parallel(kPairs, 2, [&](std::size_t k) {
       const auto& [wi, wo] = uniform.pairs[k];
       const Components f = model.evaluate(pair_geometry(wi, wo, material.rotation_deg));
       for (std::size_t c = 0; c < 3; ++c) {
@@ -83,7 +82,7 @@ std::vector<double> plain_read(const Table& table, Reader reader,
                                const std::vector<Directions>& pairs) {
   std::vector<double> values(3 * pairs.size());
   with_threads(2, [&] {
-    tbb::parallel_for(std::size_t{0}, pairs.size(), [&](std::size_t p) {
+    run_parallel(pairs.size(), 2, [&](std::size_t p) {
       if (reader == Reader::kInterpolated) {
         table.interpolate(pairs[p], std::span(values).subspan(3 * p, 3));
         return;

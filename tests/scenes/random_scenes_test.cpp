@@ -1,5 +1,3 @@
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +7,7 @@
 
 #include "model/reflectance.h"
 #include "scene/planner.h"
+#include "support/threads.h"
 #include "tests/catch.h"
 #include "tests/support/random_scene.h"
 
@@ -46,7 +45,7 @@ Seen seen_in(RandomInputs& draw, const Scene& scene, const MaterialPlan& plan, i
   constexpr std::size_t kParts = 8;
   const std::size_t size = pairs.size() / kParts;
   std::array<Seen, kParts> parts;
-  tbb::parallel_for(std::size_t{0}, kParts, [&](std::size_t k) {
+  run_parallel(kParts, 2, [&](std::size_t k) {
     parts[k] = seen_at(std::span(pairs).subspan(k * size, size), plan);
   });
   Seen seen;
