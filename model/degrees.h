@@ -38,6 +38,7 @@ Rounded<T> two_difference(const T& a, const T& b) {
   return two_sum(a, T(-b));
 }
 
+/// Error: 2 eps.
 template <class T>
 T degrees_to_radians(const T& degrees) {
   return degrees * (pi<T>() / T(180));
@@ -57,9 +58,8 @@ T reduce_turns(const T& degrees) {
   }
 }
 
-/// Sine and cosine of an angle in degrees that is taken as exact. Any finite angle; the error stays
-/// below about one unit in the last place also beside 90 degrees, where cos(x * pi / 180) has lost
-/// three digits (model.md, section 2).
+/// Sine and cosine of an angle in degrees that is taken as exact. Any finite angle. Error: 1 eps,
+/// also beside 90 degrees, where cos(x * pi / 180) has lost three digits (model.md, section 2).
 template <class T>
 SinCos<T> sincosd(const T& degrees) {
   using std::cos;
@@ -79,7 +79,7 @@ SinCos<T> sincosd(const T& degrees) {
   }
 }
 
-/// sincosd(angle.value + angle.error): the rounding error is put back to first order.
+/// sincosd(angle.value + angle.error): the rounding error is put back to first order. Error: 2 eps.
 template <class T>
 SinCos<T> sincosd(const Rounded<T>& angle) {
   const SinCos<T> rounded = sincosd(angle.value);

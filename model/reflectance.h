@@ -18,7 +18,7 @@ namespace clothbrdf {
 /// The part of f_r that depends on where light and eye are, apart from the half vector and
 /// cos_theta_d: S of model.md section 7, V-cavity shadowing over 4 cos cos (microfacet), or 1 /
 /// cos_theta_i (paper). Both directions above the horizon. The microfacet form neither cancels nor
-/// overflows early; it is at most 1 / (2 cos_theta_d^2). Without shadowing G is 1.
+/// overflows early; it is at most 1 / (2 cos_theta_d^2). Without shadowing G is 1. Error: 2 eps.
 template <class T>
 T directional_factor(Reflectance reflectance, const T& h_n, const T& cos_theta_d,
                      const T& cos_theta_i, const T& cos_theta_o, bool shadowing = true) {
@@ -33,7 +33,7 @@ T directional_factor(Reflectance reflectance, const T& h_n, const T& cos_theta_d
 }
 
 /// Colour of light that has travelled through the yarn: rho (paper, section 3.3; diffuse_path in
-/// layer thicknesses).
+/// layer thicknesses). Error: 2 eps times the condition number.
 template <class T>
 T diffuse_colour(const T& absorption, const T& diffuse_path) {
   using std::exp;
@@ -41,7 +41,8 @@ T diffuse_colour(const T& absorption, const T& diffuse_path) {
 }
 
 /// f of the diffuse component in a channel, the same for all directions above the horizon, by the
-/// shares of the surface of warp and weft (model.md section 7; paper, eq. 5).
+/// shares of the surface of warp and weft (model.md section 7; paper, eq. 5). Error: 4 eps times
+/// the condition number.
 template <class T>
 T diffuse_reflectance(const BasicMaterial<T>& material, const std::array<T, 2>& shares,
                       std::size_t channel) {

@@ -30,7 +30,7 @@ T pi() {
   }
 }
 
-/// Unit roundoff of T; of the value part where T carries a derivative.
+/// Unit roundoff of T, eps; of the value part where T carries a derivative.
 template <class T>
 T machine_epsilon() {
   if constexpr (kCarriesDerivative<T>) {

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <iomanip>
 #include <iostream>
 #include <sstream>
@@ -8,12 +7,12 @@
 #include "tabulate/batch.h"
 #include "tabulate/precision_check.h"
 #include "tests/catch.h"
+#include "tests/hard_cases/accuracy_table.h"
 #include "tests/hard_cases/hard_materials.h"
 #include "tests/hard_cases/hard_promise.h"
 #include "tests/hard_cases/trapped.h"
 #include "tests/reference/reference_model.h"
 #include "tests/reference/worst_case.h"
-#include "tests/support/temporary_folder.h"
 
 namespace clothbrdf::test {
 namespace {
@@ -46,36 +45,10 @@ std::string row_of(const std::string& name, const std::vector<PrecisionFigure>& 
   return row.str();
 }
 
-/// docs/accuracy.md and the place of the table in it: after its head, up to an empty line.
-struct MeasuredTable {
-  std::filesystem::path file = CLOTHBRDF_SOURCE_DIR "/docs/accuracy.md";
-  std::string text = read_file(file);
-  std::size_t begin = 0;
-  std::size_t end = 0;
-
-  MeasuredTable() {
-    const std::string head = "| material | double |";
-    const std::size_t at = text.find(head);
-    REQUIRE(at != std::string::npos);
-    begin = text.find('\n', text.find('\n', at) + 1) + 1;
-    end = text.find("\n\n", begin - 1) + 1;
-  }
-};
-
-/// The first column.
-std::vector<std::string> names_of(const std::string& rows) {
-  std::vector<std::string> names;
-  std::istringstream lines(rows);
-  for (std::string line; std::getline(lines, line);) {
-    names.push_back(line.substr(2, line.find(" |", 2) - 2));
-  }
-  return names;
-}
-
 }  // namespace
 
 TEST_CASE("every hard material keeps every promise at the hard pairs, in double and in float") {
-  std::string rows;
+  std::vector<std::string> rows;
   for (const HardMaterial& hard : catalogue()) {
     std::vector<PrecisionFigure> worst;
     for (const Reflectance reflectance : {Reflectance::kMicrofacet, Reflectance::kPaper}) {
@@ -100,15 +73,9 @@ TEST_CASE("every hard material keeps every promise at the hard pairs, in double 
         }
       }
     }
-    rows += row_of(hard.name, worst);
+    rows.push_back(row_of(hard.name, worst));
   }
-  // CLOTHBRDF_WRITE_REFERENCES=1 writes what was measured into docs/accuracy.md.
-  const MeasuredTable table;
-  if (std::getenv("CLOTHBRDF_WRITE_REFERENCES") != nullptr) {
-    write_file(table.file, table.text.substr(0, table.begin) + rows + table.text.substr(table.end));
-  } else {
-    CHECK(names_of(table.text.substr(table.begin, table.end - table.begin)) == names_of(rows));
-  }
+  check_or_write_rows("| material | double |", rows);
 }
 
 TEST_CASE("the double model is within its promise of 50 digits in every hard material") {
