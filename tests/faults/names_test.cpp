@@ -58,7 +58,7 @@ TEST_CASE("an unfinished file has a hidden name that differs from run to run") {
 TEST_CASE("an unfinished file can be read by whom the finished one can, and by nobody else") {
   CHECK(hidden_file(Place(kNewName)).mode == 0644);
   const Place place({plain_writer(), true, true});
-  for (const mode_t mode : {0600, 0640, 0666}) {
+  for (const mode_t mode : {0600U, 0640U, 0666U}) {
     // Before it has them all, as after open(), it has no more than these.
     place.reset();
     REQUIRE(::chmod(place.file().c_str(), mode) == 0);

@@ -54,6 +54,11 @@ ModelFunction function(const std::string& name, double promised,
 }
 
 template <class T>
+LobeAxes<T> axes_of(const T& along, const T& across) {
+  return {along, across};
+}
+
+template <class T>
 BasicYarn<T> yarn_of(const std::vector<T>& x) {
   BasicYarn<T> yarn;
   yarn.lobe_axes = {x[0], x[1]};
@@ -148,25 +153,22 @@ std::vector<ModelFunction> model_functions() {
   add("path_weights, all, 64 layers, rest", 450, path,
       [](const auto& x) { return weight_of<64, true, 129>(x); });
   const InputRange across = {{0, 1e-8, 0.3}, 1e-9, 0.7, true};
-  add("lobe_height", 4, {across, across, kCosine, kAxis, kAxis}, [](const auto& x) {
-    return lobe_height(x[0], x[1], x[2], LobeAxes{x[3], x[4]});
-  });
-  add("lobe_azimuthal_mean", 4, {across, kCosine, kAxis, kAxis}, [](const auto& x) {
-    return lobe_azimuthal_mean(x[0], x[1], LobeAxes{x[2], x[3]});
-  });
+  add("lobe_height", 4, {across, across, kCosine, kAxis, kAxis},
+      [](const auto& x) { return lobe_height(x[0], x[1], x[2], axes_of(x[3], x[4])); });
+  add("lobe_azimuthal_mean", 4, {across, kCosine, kAxis, kAxis},
+      [](const auto& x) { return lobe_azimuthal_mean(x[0], x[1], axes_of(x[2], x[3])); });
   const InputRange from = {{0, 1e-9, 0.5, 1.5}, 0, 1.5};
   const InputRange to = {{1.5707963267948966, 2, 3.141592653589793}, 1.5, 3.1};
   add("lobe_azimuthal_mean, of a part", 8, {across, kCosine, kAxis, kAxis, from, to},
       [](const auto& x) {
-        return lobe_azimuthal_mean(x[0], x[1], LobeAxes{x[2], x[3]}, x[4], x[5]);
+        return lobe_azimuthal_mean(x[0], x[1], axes_of(x[2], x[3]), x[4], x[5]);
       });
   const InputRange side = {{0, 1e-300, 1e-12, 1 - 1e-15, 1, 1e12}, 1e-12, 1e12, true};
   const InputRange last = {{1e-12, 1, 1 + 1e-15, 1e12}, 1e-12, 1e12, true};
   add("carlson_rd", 4, {side, side, last},
       [](const auto& x) { return x[0] == 0 && x[1] == 0 ? x[0] : carlson_rd(x[0], x[1], x[2]); });
-  add("lobe_integral", 6, {kAxis, kAxis}, [](const auto& x) {
-    return lobe_integral(LobeAxes{x[0], x[1]});
-  });
+  add("lobe_integral", 6, {kAxis, kAxis},
+      [](const auto& x) { return lobe_integral(axes_of(x[0], x[1])); });
   add("directional_factor, microfacet", 2, {kCosine, kCosine, kCosine, kCosine}, [](const auto& x) {
     return directional_factor(Reflectance::kMicrofacet, x[0], x[1], x[2], x[3]);
   });
