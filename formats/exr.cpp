@@ -20,7 +20,9 @@
 #include <utility>
 #include <vector>
 
+#include "formats/exr_header.h"
 #include "formats/exr_stream.h"
+#include "formats/json_text.h"
 #include "formats/table_metadata.h"
 #include "model/parameters.h"
 #include "support/errors.h"
@@ -217,7 +219,7 @@ TableSpec read_spec(const Imf::InputFile& in, const std::string& name) {
   std::size_t found = 0;
   for (auto c = header.channels().begin(); c != header.channels().end(); ++c) {
     if (c.channel().xSampling != 1 || c.channel().ySampling != 1) {
-      throw InputError(name + ": channel " + c.name() + " is subsampled");
+      throw InputError(name + ": channel " + one_line(c.name()) + " is subsampled");
     }
     ++found;
   }
@@ -237,25 +239,22 @@ TableSpec read_spec(const Imf::InputFile& in, const std::string& name) {
 Table read_exr(const std::filesystem::path& path) {
   const std::string name = path.string();
   require_readable(path);
+  require_honest_exr_header(path);
   try {
     CountingIStream stream(path);
     Imf::InputFile in(stream);
     TableSpec spec = read_spec(in, name);
     const PictureSize size = picture_size(spec);
-    // Compression may shrink zeros a thousandfold, not more: a header cannot ask for memory that no
-    // file backs.
-    const double bytes = static_cast<double>(std::filesystem::file_size(path));
-    const double cells =
-        static_cast<double>(spec.cell_count()) * static_cast<double>(spec.channels.size());
-    if (cells > 1100 * bytes) throw InputError(name + ": the file is too short for its grid");
-    std::vector<double> values(spec.cell_count() * spec.channels.size());
+    // What the file cannot hold uncompressed is set aside as it is read.
+    std::vector<double> values;
+    values.reserve(std::min<std::size_t>(spec.cell_count() * spec.channels.size(),
+                                         std::filesystem::file_size(path)));
     RowBuffer<float> buffer(spec, size, Imf::FLOAT);
     for (std::size_t row = 0; row < spec.row_count(); ++row) {
       const auto line = static_cast<int>(row * size.lines_per_row);
       in.setFrameBuffer(buffer.frame(row * size.lines_per_row));
       in.readPixels(line, line + static_cast<int>(size.lines_per_row) - 1);
-      std::copy(buffer.samples().begin(), buffer.samples().end(),
-                values.begin() + static_cast<std::ptrdiff_t>(row * spec.row_values()));
+      values.insert(values.end(), buffer.samples().begin(), buffer.samples().end());
     }
     if (stream.farthest() != std::filesystem::file_size(path)) {
       throw InputError(name + ": bytes follow the end of the picture");
@@ -265,7 +264,7 @@ Table read_exr(const std::filesystem::path& path) {
     mask_not_measured(spec, values, valid);
     return {std::move(spec), std::move(values), std::move(valid), exr_precision({.half = half})};
   } catch (const Iex::BaseExc& error) {
-    throw InputError(name + ": cannot read: " + error.what());
+    throw InputError(name + ": cannot read: " + one_line(error.what(), 200));
   }
 }
 

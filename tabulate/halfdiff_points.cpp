@@ -37,12 +37,15 @@ CLOTHBRDF_VECTORISE void fill_factors(Reflectance reflectance, bool shadowing, b
                                       const double* cos_phi_d, std::size_t count, double* factor,
                                       double* above) {
   for (std::size_t k = 0; k < count; ++k) {
-    const IncidenceCosines<double> c = incidence_cosines(theta_h, theta_d, cos_phi_d[k]);
+    IncidenceCosines<double> c = incidence_cosines(theta_h, theta_d, cos_phi_d[k]);
+    const bool visible = c.i > 0 && c.o > 0;
+    // What is not seen is computed, too, but divides nothing by 0.
+    c.i = visible ? c.i : 1;
+    c.o = visible ? c.o : 1;
     double f = directional_factor(reflectance, theta_h.cos, theta_d.cos, c.i, c.o, shadowing);
     if (reflectance == Reflectance::kPaper && folded) {
       f = (f + directional_factor(reflectance, theta_h.cos, theta_d.cos, c.o, c.i)) / 2;
     }
-    const bool visible = c.i > 0 && c.o > 0;
     factor[k] = visible ? f : 0;
     above[k] = visible ? 1 : 0;
   }

@@ -166,9 +166,22 @@ TEST_CASE("an EXR picture that is not one of our tables is refused in one line")
   picture("axes.exr", 48, 20, changed, {"R", "G", "B"});
   refused("axes.exr", "not the axes of a halfdiff4d grid");
   write_file(folder / "noise.exr", std::string(1000, 'x'));
-  refused("noise.exr", "cannot read");
+  refused("noise.exr", "cannot read: this is no EXR picture");
   write_table(preset_table("silk", halfdiff4d(5, 4, 6, 8)), folder / "whole.exr");
   const std::string whole = read_file(folder / "whole.exr");
+  // What OpenEXR would believe, and set aside memory for.
+  const auto claims = [&](std::size_t at, const std::string& bytes, const std::string& part) {
+    std::string claiming = whole;
+    claiming.replace(at, bytes.size(), bytes);
+    write_file(folder / "claims.exr", claiming);
+    refused("claims.exr", part);
+  };
+  const std::size_t type = whole.find("string");
+  claims(type + 7, "\xf0\xff\xff\x70", "its attribute 'clothbrdf' claims 1895825392 bytes");
+  claims(whole.find("box2i") + 18, "\xff\xff\xff\x7f", "too short for its picture");
+  claims(5, "\x02", "scan lines in one part");
+  write_file(folder / "header.exr", whole.substr(0, type));
+  refused("header.exr", "the file is cut off");
   write_file(folder / "cut.exr", whole.substr(0, whole.size() - 100));
   refused("cut.exr", "");
   write_file(folder / "more_bytes.exr", whole + "x");
