@@ -4,9 +4,9 @@
 #include <array>
 #include <bit>
 #include <cstdint>
-#include <cstring>
 #include <fstream>
 #include <string>
+#include <string_view>
 
 #include "formats/json_text.h"
 #include "support/errors.h"
@@ -27,6 +27,36 @@ struct Picture {
   std::array<std::int32_t, 4> window{0, 0, 0, 0};  // x and y of its corners
   double channels = 1;
 };
+
+struct FixedType {
+  std::string_view name;
+  std::uint32_t bytes;
+};
+// Of these OpenEXR reads so many bytes, whatever their size is said to be.
+constexpr FixedType kFixedTypes[] = {{"box2f", 16},
+                                     {"box2i", 16},
+                                     {"chromaticities", 32},
+                                     {"compression", 1},
+                                     {"deepImageState", 1},
+                                     {"double", 8},
+                                     {"envmap", 1},
+                                     {"float", 4},
+                                     {"int", 4},
+                                     {"keycode", 28},
+                                     {"lineOrder", 1},
+                                     {"m33d", 72},
+                                     {"m33f", 36},
+                                     {"m44d", 128},
+                                     {"m44f", 64},
+                                     {"rational", 8},
+                                     {"tiledesc", 9},
+                                     {"timecode", 8},
+                                     {"v2d", 16},
+                                     {"v2f", 8},
+                                     {"v2i", 8},
+                                     {"v3d", 24},
+                                     {"v3f", 12},
+                                     {"v3i", 12}};
 
 double extent(std::int32_t low, std::int32_t high) {
   return std::max(static_cast<double>(high) - low + 1, 1.0);
@@ -88,18 +118,22 @@ class HeaderReader {
 
   void note(const std::string& attribute, const std::string& type, std::uint32_t size,
             Picture& picture) {
-    if (type == "box2i" && attribute == "dataWindow" && size == sizeof(picture.window)) {
+    for (const FixedType& fixed : kFixedTypes) {
+      if (type != fixed.name || size == fixed.bytes) continue;
+      refuse("its attribute '" + one_line(attribute) + "' has " + std::to_string(size) +
+             " bytes; a " + type + " has " + std::to_string(fixed.bytes));
+    }
+    if (type == "box2i" && attribute == "dataWindow") {
       std::array<char, sizeof(picture.window)> bytes;
       read(bytes.data(), bytes.size());
       picture.window = std::bit_cast<std::array<std::int32_t, 4>>(bytes);
     } else if (type == "chlist") {
-      // A name, which an empty one ends, and 16 bytes.
+      // Each a name and 16 bytes; an empty name ends them.
       const std::uint64_t end = static_cast<std::uint64_t>(in_.tellg()) + size;
       double channels = 0;
-      for (std::string channel = text();
-           !channel.empty() && static_cast<std::uint64_t>(in_.tellg()) < end; channel = text()) {
-        in_.seekg(16, std::ios::cur);
-        ++channels;
+      for (; !text().empty(); ++channels) in_.seekg(16, std::ios::cur);
+      if (static_cast<std::uint64_t>(in_.tellg()) != end) {
+        refuse("its list of channels is not as long as it claims");
       }
       picture.channels = std::max(channels, 1.0);
     }

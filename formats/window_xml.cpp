@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "formats/format.h"
+#include "formats/json_text.h"
 #include "support/errors.h"
 
 namespace clothbrdf {
@@ -155,7 +156,9 @@ const ScatteringBlock* WindowFile::find(std::string_view spectrum) const {
   return found == blocks_.end() ? nullptr : &found->second;
 }
 
-void WindowFile::refuse(const std::string& what) const { throw InputError(name_ + ": " + what); }
+void WindowFile::refuse(const std::string& what) const {
+  throw InputError(name_ + ": " + one_line(what, 300));
+}
 
 WindowWriter::WindowWriter(AtomicFile& file, const TableSpec& spec, std::string_view definition)
     : file_(file) {
