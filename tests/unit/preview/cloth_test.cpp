@@ -9,6 +9,7 @@
 #include "support/errors.h"
 #include "table/spectrum.h"
 #include "tests/catch.h"
+#include "tests/support/lobe_condition.h"
 #include "tests/support/make_table.h"
 #include "tests/support/part_of.h"
 #include "tests/support/random_inputs.h"
@@ -22,12 +23,7 @@ constexpr Part kParts[] = {Part::kTotal, Part::kSpecular, Part::kInternal, Part:
 constexpr double kSameImage = 1e-12;
 
 double condition(const Material& material, const Directions& d) {
-  double narrowest = 1;
-  for (const Yarn& yarn : {material.warp, material.weft}) {
-    for (const double axis : yarn.lobe_axes) narrowest = std::min(narrowest, axis);
-  }
-  const double x = pair_geometry(d.wi, d.wo, 0.0).cos_theta_d;
-  return std::max(1.0, 1 / (narrowest * x));
+  return lobe_condition(material, pair_geometry(d.wi, d.wo, 0.0).cos_theta_d);
 }
 
 double relative_difference(double value, double exact) {

@@ -8,6 +8,7 @@
 #include "formats/material_json.h"
 #include "tabulate/batch_kernel.h"
 #include "tests/catch.h"
+#include "tests/support/lobe_condition.h"
 #include "tests/support/part_of.h"
 #include "tests/support/random_inputs.h"
 #include "tests/support/temporary_folder.h"
@@ -56,20 +57,6 @@ struct Batch {
   std::array<std::vector<T>, 6> in;
 };
 
-double narrowest_axis(const Material& material) {
-  double narrowest = 1;
-  for (const Yarn& yarn : {material.warp, material.weft}) {
-    for (const double axis : yarn.lobe_axes) narrowest = std::min(narrowest, axis);
-  }
-  return narrowest;
-}
-
-// How much a lobe magnifies the rounding of the directions: h has the error of wi + wo over its
-// length, and the density sees h over the axis.
-double condition(const Material& material, const PairGeometry<double>& g) {
-  return std::max(1.0, 1 / (narrowest_axis(material) * g.cos_theta_d));
-}
-
 struct Worst {
   double error = 0;  ///< over the promise, condition number included
   int compared = 0;
@@ -92,7 +79,8 @@ void compare(const Material& material, const Effects& effects, bool components,
       const double exact = part_of(f, channels[c]);
       const auto value = double{values[c][p]};
       if (exact == 0 || !(exact < 1e37)) continue;
-      const double error = std::abs(value / exact - 1) / (kPromise<T> * condition(material, g));
+      const double error =
+          std::abs(value / exact - 1) / (kPromise<T> * lobe_condition(material, g.cos_theta_d));
       if (!(error <= 1)) {
         INFO("channel " << full_name(channels[c]) << ": " << value << " for " << exact);
         print(std::cout, material, pairs[p]);
@@ -177,7 +165,7 @@ TEST_CASE("batches keep to looser tolerances, and use them") {
         const PairGeometry<double> g =
             pair_geometry(batch.vector(0, p), batch.vector(3, p), material.rotation_deg);
         const Components f = model.evaluate(g);
-        const double rounding = kPromise<float> * condition(material, g);
+        const double rounding = kPromise<float> * lobe_condition(material, g.cos_theta_d);
         for (std::size_t c = 0; c < channels.size(); ++c) {
           const double exact = part_of(f, channels[c]);
           if (exact == 0 || !(exact < 1e37)) continue;
