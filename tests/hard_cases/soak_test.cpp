@@ -2,8 +2,10 @@
 #include <cmath>
 #include <iomanip>
 #include <iostream>
+#include <mutex>
 #include <sstream>
 
+#include "support/threads.h"
 #include "tabulate/batch.h"
 #include "tabulate/kernel.h"
 #include "tests/catch.h"
@@ -84,6 +86,14 @@ struct Findings {
   std::string first = {};
 
   long all() const { return not_numbers + negative + needlessly_infinite + not_reciprocal; }
+  void add(const Findings& others) {
+    values += others.values;
+    not_numbers += others.not_numbers;
+    negative += others.negative;
+    needlessly_infinite += others.needlessly_infinite;
+    not_reciprocal += others.not_reciprocal;
+    if (first.empty()) first = others.first;
+  }
   void add(long& count, const Material& material, const Directions& d, std::size_t channel,
            double value) {
     ++count;
@@ -95,11 +105,11 @@ struct Findings {
     test::print(text, material, {});
     first = text.str();
   }
-  void print_to_cout(const char* what, std::uint64_t seed) const {
+  void print_to_cout(const char* what) const {
     std::cout << what << ": " << values << " values, " << not_numbers << " no numbers, " << negative
               << " negative, " << needlessly_infinite << " infinite though they fit, "
-              << not_reciprocal << " not reciprocal (seed " << seed << ")\n"
-              << first;
+              << not_reciprocal << " not reciprocal\n"
+              << first << std::flush;
   }
 };
 
@@ -185,6 +195,38 @@ void soak_formula(const Material& material, const Directions& d, Findings& findi
   }
 }
 
+/// What was found in one material or in many.
+struct Soak {
+  Findings floats = {};
+  Findings doubles = {};
+  Findings formula = {};
+
+  void add(const Soak& others) {
+    floats.add(others.floats);
+    doubles.add(others.doubles);
+    formula.add(others.formula);
+  }
+  void print_to_cout() const {
+    floats.print_to_cout("float batches");
+    doubles.print_to_cout("double batches");
+    formula.print_to_cout("the plain formula");
+  }
+};
+
+/// One random material at so many random pairs, and at a few by the plain formula.
+Soak soak_material(std::uint64_t seed, std::size_t pair_count) {
+  constexpr std::size_t kFormulaPairs = 100;
+  ExtremeInputs draw(seed);
+  const Material material = draw.material();
+  std::vector<Directions> pairs;
+  while (pairs.size() < pair_count) pairs.push_back(draw.pair());
+  Soak found;
+  soak_batches<float>(material, pairs, found.floats);
+  soak_batches<double>(material, pairs, found.doubles);
+  for (std::size_t p = 0; p < kFormulaPairs; ++p) soak_formula(material, pairs[p], found.formula);
+  return found;
+}
+
 }  // namespace
 
 TEST_CASE(
@@ -192,31 +234,28 @@ TEST_CASE(
     "infinity, and all are reciprocal") {
   // CLOTHBRDF_SOAK_CASES=100000 means 10,000 materials, 1e9 values in floats and as many in
   // doubles.
-  const int materials = std::max(150, soak_cases(0) / 10);
-  constexpr int kPairs = 20000;
-  constexpr int kFormulaPairs = 100;
+  const auto materials = static_cast<std::size_t>(std::max(150, soak_cases(0) / 10));
+  const std::size_t pairs = materials > 1000 ? 20000 : 2000;
   const std::uint64_t seed = seed_from_environment();
-  ExtremeInputs draw(seed);
-  Findings floats;
-  Findings doubles;
-  Findings formula;
-  for (int n = 0; n < materials; ++n) {
-    const Material material = draw.material();
-    std::vector<Directions> pairs;
-    for (int p = 0; p < kPairs / (materials > 1000 ? 1 : 10) + n % 2; ++p) {
-      pairs.push_back(draw.pair());
-    }
-    soak_batches<float>(material, pairs, floats);
-    soak_batches<double>(material, pairs, doubles);
-    for (int p = 0; p < kFormulaPairs; ++p)
-      soak_formula(material, pairs[static_cast<std::size_t>(p)], formula);
-  }
-  floats.print_to_cout("float batches", seed);
-  doubles.print_to_cout("double batches", seed);
-  formula.print_to_cout("the plain formula", seed);
-  CHECK(floats.all() == 0);
-  CHECK(doubles.all() == 0);
-  CHECK(formula.all() == 0);
+  std::cout << materials << " materials, the seeds " << seed << " and after" << std::endl;
+  Soak all;
+  std::size_t done = 0;
+  std::mutex adding;
+  const int threads = default_threads();
+  with_threads(threads, [&] {
+    run_parallel(materials, threads, [&](std::size_t n) {
+      const Soak found = soak_material(seed + n, pairs + n % 2);
+      const std::lock_guard lock(adding);
+      all.add(found);
+      if (++done % 1000 > 0 || done == materials) return;
+      std::cout << done << " of " << materials << " materials:\n";
+      all.print_to_cout();
+    });
+  });
+  all.print_to_cout();
+  CHECK(all.floats.all() == 0);
+  CHECK(all.doubles.all() == 0);
+  CHECK(all.formula.all() == 0);
 }
 
 }  // namespace clothbrdf::test
